@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+# What every target shares: the language level, the warnings, the sanitizers, and the include shims that make the dependency
+# table of docs/DESIGN.md true.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+find_program(PALPATE_CCACHE ccache)
+if(PALPATE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${PALPATE_CCACHE}")
+endif()
+
+set(PALPATE_SANITIZE "" CACHE STRING "Sanitizers for every target, as -fsanitize takes them (address,undefined or thread)")
+option(PALPATE_COVERAGE "Instrument for gcov" OFF)
+
+add_library(palpate_flags INTERFACE)
+target_compile_options(palpate_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wold-style-cast -Wcast-align
+  -Wundef -Wformat=2 -Wvla -Wmissing-declarations -Werror)
+if(PALPATE_SANITIZE)
+  target_compile_options(palpate_flags INTERFACE -fsanitize=${PALPATE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(palpate_flags INTERFACE -fsanitize=${PALPATE_SANITIZE})
+endif()
+if(PALPATE_COVERAGE)
+  target_compile_options(palpate_flags INTERFACE --coverage)
+  target_link_options(palpate_flags INTERFACE --coverage)
+endif()
+
+# Same bits on every target: no contraction into fused multiply-add.
+set(PALPATE_RT_FLAGS -fno-exceptions -fno-rtti -ffp-contract=off -fstack-usage)
+if(NOT PALPATE_SANITIZE AND NOT PALPATE_COVERAGE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
+  list(APPEND PALPATE_RT_FLAGS -Wframe-larger-than=2048)
+endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND PALPATE_RT_FLAGS -fcallgraph-info=su)
+endif()
+
+# palpate_module(TARGET FOLDER SOURCES...): a static library whose public include path holds nothing but `FOLDER/`, so that a
+# target sees only the folders it links.
+function(palpate_module target folder)
+  set(shim "${PROJECT_BINARY_DIR}/include_shims/${folder}")
+  file(MAKE_DIRECTORY "${shim}")
+  if(NOT EXISTS "${shim}/${folder}")
+    file(CREATE_LINK "${PROJECT_SOURCE_DIR}/${folder}" "${shim}/${folder}" SYMBOLIC)
+  endif()
+  add_library(${target} STATIC ${ARGN})
+  target_include_directories(${target} PUBLIC
+    "$<BUILD_INTERFACE:${shim}>" "$<INSTALL_INTERFACE:include/palpate>")
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:palpate_flags>)
+endfunction()

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the sub-commands of `palpate` share. Each sub-command is one file with one add_...() function, listed in main.cpp.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "host_bake/base/error.hpp"
+
+namespace palpate::cli {
+
+/// Exit statuses of docs and scripts; see `palpate --help`.
+enum Exit : int { kDone = 0, kOther = 1, kUsage = 2, kRefused = 3, kDevice = 4, kPromiseBroken = 5 };
+
+/// Ends the command: one line `palpate: error: WHAT: WHERE: HOW TO MEND` on stderr, then this status.
+struct Failure : std::runtime_error {
+  Failure(Exit code_, const std::string& what, const std::string& where, const std::string& mend)
+      : std::runtime_error(what + ": " + where + ": " + mend), code(code_) {}
+  Exit code;
+};
+
+/// Set by a command that finished but has to report a status other than 0 (a broken promise); printed results stay.
+void set_exit(Exit code);
+
+/// Writes the whole file or none: a temporary name beside the target, synced, renamed. Throws Failure(kOther).
+void write_file(const std::filesystem::path& target, std::span<const std::byte> bytes);
+void write_file(const std::filesystem::path& target, std::string_view text);
+
+/// A progress bar on a terminal (stage, percent, time left), plain lines when piped, nothing with quiet.
+bake::Progress progress(bool quiet);
+
+void add_make_model(CLI::App& app);
+void add_check(CLI::App& app);
+void add_bake(CLI::App& app);
+void add_inspect(CLI::App& app);
+void add_emit(CLI::App& app);
+void add_replay(CLI::App& app);
+void add_run(CLI::App& app);
+void add_doctor(CLI::App& app);
+
+}  // namespace palpate::cli
