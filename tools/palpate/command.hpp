@@ -26,12 +26,14 @@ struct Failure : std::runtime_error {
 
 /// Set by a command that finished but has to report a status other than 0 (a broken promise); printed results stay.
 void set_exit(Exit code);
+[[nodiscard]] Exit exit_status();
 
-/// Writes the whole file or none: a temporary name beside the target, synced, renamed. Throws Failure(kOther).
+/// Writes the whole file or none (see output_file.hpp). Throws Failure(kOther).
 void write_file(const std::filesystem::path& target, std::span<const std::byte> bytes);
 void write_file(const std::filesystem::path& target, std::string_view text);
 
-/// A progress bar on a terminal (stage, percent, time left), plain lines when piped, nothing with quiet.
+/// Shows work that takes longer than a second on stderr: a bar on a terminal (stage, percent, time the stage still takes),
+/// plain lines when piped, nothing with quiet. The bar is wiped when the last copy of the result is destroyed.
 bake::Progress progress(bool quiet);
 
 void add_make_model(CLI::App& app);

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The executable's frame: the table of sub-commands, and every error turned into one line and an
+// exit status.
+#include <poll.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <initializer_list>
+#include <iostream>
+#include <new>
+#include <string>
+
+#include "config/scene.hpp"
+#include "rt_core/image/format.hpp"
+#include "tools/palpate/command.hpp"
+
+namespace palpate::cli {
+namespace {
+
+// In the order in which --help lists them.
+constexpr std::initializer_list<void (*)(CLI::App&)> kCommands = {
+    // clang-format off
+    // clang-format on
+};
+
+constexpr const char* kFooter =
+    "Exit status: 0 done; 2 the command line or a config file is wrong; 3 an input (mesh, image, "
+    "pose file) is refused;\n"
+    "4 a device is missing or failed; 5 a promise was broken during a run; 1 anything else.\n"
+    "Units are SI: metres, newtons, newton-metres, seconds, radians.";
+
+std::string version() {
+  return "palpate " PALPATE_VERSION ", image format " + std::to_string(image::kFormatMajor) + "." +
+         std::to_string(image::kFormatMinor) +
+         ", " PALPATE_BUILD ", float32 geometry, double solves";
+}
+
+int error(const std::string& message, Exit code) {
+  std::string line = message;
+  for (char& c : line) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  std::fprintf(stderr, "palpate: error: %s\n", line.c_str());
+  return code;
+}
+
+/// `palpate` or `palpate replay`: where a mistake of the command line was made.
+std::string command_name(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? "palpate" : "palpate " + chosen.front()->get_name();
+}
+
+/// The reader of a pipe may leave when it has seen enough: no error. A full disk is one.
+int finish_output(int code) {
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout.good()) return code;
+  pollfd out = {STDOUT_FILENO, 0, 0};
+  const bool reader_left = ::poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0;
+  if (reader_left || code != kDone) return code;
+  return error("cannot write: standard output: give it a place that is writable and has room",
+               kOther);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Haptic contact between detailed rigid objects inside a hard time budget");
+  app.name("palpate");
+  app.footer(kFooter);
+  app.set_version_flag("--version", version());
+  app.require_subcommand(1);
+  for (const auto add : kCommands) add(app);
+  try {
+    app.parse(argc, argv);
+    return exit_status();
+  } catch (const CLI::Success& e) {
+    return app.exit(e);  // --help and --version
+  } catch (const CLI::ParseError& e) {
+    const std::string name = command_name(app);
+    return error(std::string(e.what()) + ": " + name + ": see '" + name + " --help'", kUsage);
+  }
+}
+
+int run_and_report(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const Failure& e) {
+    return error(e.what(), e.code);
+  } catch (const config::ConfigError& e) {
+    return error(e.what(), kUsage);
+  } catch (const bake::InputRefused& e) {
+    return error(e.what(), kRefused);
+  } catch (const std::bad_alloc&) {
+    return error("out of memory: this process: use a smaller input or a machine with more memory",
+                 kOther);
+  } catch (const std::exception& e) {
+    return error(std::string(e.what()) + ": internal: please report it with the command line",
+                 kOther);
+  } catch (...) {
+    return error("unknown failure: internal: please report it with the command line", kOther);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::cli
+
+int main(int argc, char** argv) {
+  // A closed pipe must end neither the real-time loop nor the writing of files.
+  std::signal(SIGPIPE, SIG_IGN);
+  return palpate::cli::finish_output(palpate::cli::run_and_report(argc, argv));
+}
