@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/palpate/image_json.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "rt_core/palpate_rt.hpp"
+
+namespace palpate::cli {
+namespace {
+
+std::string hex(std::span<const std::uint8_t> bytes) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string out;
+  out.reserve(2 * bytes.size());
+  for (const std::uint8_t b : bytes) {
+    out += kDigits[b >> 4];
+    out += kDigits[b & 15];
+  }
+  return out;
+}
+
+nlohmann::json level_json(const image::Level& level, std::size_t index) {
+  const bool is_free = level.free != 0;
+  nlohmann::json j{{"level", index},
+                   {"free", is_free},
+                   {"triangles", level.triangles},
+                   {"pieces", level.pieces},
+                   {"resolution", level.resolution},
+                   {"max_surface_deviation_rel", level.max_surface_deviation_rel},
+                   {"max_hausdorff_rel", level.max_hausdorff_rel},
+                   {"min_support_area_rel", level.min_support_area_rel}};
+  if (is_free) {
+    j["triangles"] = nullptr;
+    j["resolution"] = nullptr;
+  }
+  return j;
+}
+
+}  // namespace
+
+std::size_t engine_bytes(const ImageView& image) {
+  const std::array bodies{image, image};
+  const std::array pairs{BodyPair{.a = 0, .b = 1}};
+  return required_bytes({.bodies = bodies, .pairs = pairs, .tool = 0}, Limits{});
+}
+
+nlohmann::json image_json(const ImageView& image, std::size_t engine_bytes) {
+  const image::Header& h = *image.header;
+  nlohmann::json levels = nlohmann::json::array();
+  for (const image::Level& level : image.levels) {
+    levels.push_back(level_json(level, levels.size()));
+  }
+  return {{"format_version", std::to_string(h.format_major) + "." + std::to_string(h.format_minor)},
+          {"bytes", h.total_bytes},
+          {"radius_m", h.radius_m},
+          {"centre_m", h.centre_m},
+          {"source",
+           {{"triangles", h.source_triangles},
+            {"vertices", h.source_vertices},
+            {"components", h.source_components},
+            {"boundary_edges", h.source_boundary_edges},
+            {"crossings", h.source_crossings},
+            {"sha256", hex(h.source_sha256)}}},
+          {"content_sha256", hex(h.content_sha256)},
+          {"delta_rel", h.delta_rel},
+          {"pieces_total", image.pieces.size()},
+          {"leaf_pieces", h.leaf_pieces},
+          {"tree_depth", h.tree_depth},
+          {"max_hull_vertices", h.max_hull_vertices},
+          {"engine_bytes", engine_bytes},
+          {"levels", levels}};
+}
+
+}  // namespace palpate::cli
