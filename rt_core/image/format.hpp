@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The memory image, format version 1.0: what lies where. docs/FORMAT.md specifies it for readers in other languages; this
-// header is its C++ form and the only place that knows the layout.
+// The memory image, format version 1.0: what lies where. docs/FORMAT.md specifies it for readers in
+// other languages; this header is its C++ form and the only place that knows the layout.
 //
-// Little-endian; fixed-width types; every section starts on a 64-byte boundary; offsets count bytes from the start of the
-// image; no pointers. Geometry is relative to the object's centre and divided by its radius: x_body_m = centre_m + radius_m * v.
+// Little-endian; fixed-width types; every section starts on a 64-byte boundary; offsets count bytes
+// from the start of the image; no pointers. Geometry is relative to the object's centre and divided
+// by its radius: x_body_m = centre_m + radius_m * v.
+//
+// One layout for one content: the sections lie in the order of their slots, each at the first
+// 64-byte boundary after the end of the one before (the first at sizeof(Header)); total_bytes is
+// the end of the last one rounded up to 64; padding is zero. Inside a section the runs of the
+// pieces lie in the order of the pieces, without gaps: a piece's run starts where the one of the
+// piece before it ended. validate() proves all of this.
 #pragma once
 
 #include <cstddef>
@@ -19,36 +26,53 @@ inline constexpr std::size_t kAlignment = 64;
 inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< "no such index"
 
 // What the engine can walk. The baker stays below; validate() refuses what is above.
-inline constexpr std::uint32_t kMaxLevels = 64;
+inline constexpr std::uint32_t kMaxLevels =
+    64;  ///< also the greatest depth: a child's level is below its parent's
 inline constexpr std::uint32_t kMaxPieces = 1u << 24;
-inline constexpr std::uint32_t kMaxChildren = 256;        ///< children of one piece
+inline constexpr std::uint32_t kMaxChildren = 256;  ///< children of one piece
 inline constexpr std::uint32_t kMaxHullVertices = 1u << 22;
-inline constexpr std::uint32_t kMaxOpenPatchTriangles = 16;  ///< triangles of a patch whose back side can be reached
-inline constexpr std::uint32_t kAdjacencyAbove = 32;      ///< hulls with more vertices than this carry neighbour lists
+inline constexpr std::uint32_t kMaxOpenPatchTriangles =
+    16;  ///< triangles of a patch whose back side can be reached
+inline constexpr std::uint32_t kAdjacencyAbove =
+    32;  ///< hulls with more vertices than this carry neighbour lists
 
-/// A run of equal records.
+// Ranges of numbers.
+inline constexpr double kMinRadius_m = 1e-12;
+inline constexpr double kMaxRadius_m = 1e12;
+inline constexpr double kMaxCentre_m = 1e15;  ///< of each |coordinate|
+inline constexpr float kMaxNorm =
+    1.0f + 1e-5f;                          ///< of a vertex and of a sphere's centre, for radius 1
+inline constexpr float kMaxLength = 4.0f;  ///< of a sphere's radius, s, h and delta, for radius 1
+inline constexpr float kMinArea =
+    1.17549435e-38f;  ///< of a support area: the least normal float, so that 1 / D is finite
+inline constexpr float kMaxArea = 1e9f;
+
+/// A run of equal records. An empty section's slot is all zero.
 struct Section {
-  std::uint64_t offset;  ///< bytes from the start of the image, a multiple of 64; 0 where count is 0
+  std::uint64_t offset;  ///< bytes from the start of the image, a multiple of 64
   std::uint32_t count;   ///< records
   std::uint32_t stride;  ///< bytes a record
 };
 
 enum class SectionId : std::uint32_t {
-  levels = 0,            ///< Level, finest first
-  pieces = 1,            ///< Piece; the root is piece 0, children follow their parent, siblings are contiguous
+  levels = 0,  ///< Level, finest first
+  pieces =
+      1,  ///< Piece; the root is piece 0, children follow their parent, siblings are contiguous
   vertices = 2,          ///< Vertex; each piece's own run
-  neighbour_starts = 3,  ///< u32; hull_vertices + 1 a piece with adjacency, offsets into neighbours from the piece's own first one
-  neighbours = 4,        ///< u32; vertex indices local to the piece, ascending within a list
-  triangles = 5,         ///< Triangle; the patch of each piece of a level that is not free
-  virtual_faces = 6,     ///< VirtualFace; hull faces that are not of the mesh
+  neighbour_starts = 3,  ///< u32; hull_vertices + 1 a piece with adjacency, offsets into neighbours
+                         ///< from the piece's own first one
+  neighbours = 4,  ///< u32; vertex indices local to the piece, strictly ascending within a list, no
+                   ///< list empty
+  triangles = 5,   ///< Triangle; the patch of each piece of a level that is not free
+  virtual_faces = 6,  ///< VirtualFace; hull faces that are not of the mesh
   // 7 to 15 are for the region engine and later minor versions; they are empty in version 1.0.
 };
 inline constexpr std::size_t kSectionSlots = 16;
 
 enum class HeaderFlag : std::uint32_t {
-  repaired = 1u << 0,         ///< the source was repaired before baking
-  open = 1u << 1,             ///< the source has boundary edges
-  self_crossing = 1u << 2,    ///< faces of the source cross one another
+  repaired = 1u << 0,       ///< the source was repaired before baking
+  open = 1u << 1,           ///< the source has boundary edges: source_boundary_edges > 0
+  self_crossing = 1u << 2,  ///< faces of the source cross one another: source_crossings > 0
 };
 
 struct Header {
@@ -56,38 +80,38 @@ struct Header {
   std::uint16_t format_major;
   std::uint16_t format_minor;
   std::uint32_t byte_order_mark;
-  std::uint32_t header_bytes;      ///< sizeof(Header)
-  std::uint32_t flags;             ///< HeaderFlag
-  std::uint64_t total_bytes;       ///< of the whole image
+  std::uint32_t header_bytes;  ///< sizeof(Header)
+  std::uint32_t flags;         ///< HeaderFlag
+  std::uint64_t total_bytes;   ///< of the whole image
 
-  std::uint8_t content_sha256[32]; ///< of the whole image with these 32 bytes zero
-  std::uint8_t source_sha256[32];  ///< of the source mesh file as it was read
+  std::uint8_t content_sha256[32];  ///< of the whole image with these 32 bytes zero
+  std::uint8_t source_sha256[32];   ///< of the source mesh file as it was read
 
-  double centre_m[3];              ///< the object's centre in body coordinates
-  double radius_m;                 ///< of the smallest sphere about centre_m that holds every vertex
+  double centre_m[3];  ///< the object's centre in body coordinates
+  double radius_m;     ///< of the smallest sphere about centre_m that holds every vertex
 
-  std::uint32_t source_triangles;
+  std::uint32_t source_triangles;  ///< of the mesh that was baked (welded, repaired where asked)
   std::uint32_t source_vertices;
   std::uint32_t source_components;
   std::uint32_t source_boundary_edges;
   std::uint32_t source_crossings;  ///< pairs of faces that cross
   std::uint32_t reserved0;
 
-  float delta_rel;                 ///< contact tolerance that the metrics were made for, relative to the radius
-  float stop_resolution;           ///< bake stop rule: least resolution r, 0 where unused
-  float stop_deviation_rel;        ///< bake stop rule: largest surface deviation s, 0 where unused
-  std::uint32_t stop_pieces;       ///< bake stop rule: fewest pieces, 0 where unused
-  float s0_min;                    ///< smallest threshold of eq. 7 that this image serves (0: any)
-  float partner_area;              ///< smallest support area of partners that this image serves (0: any)
+  float delta_rel;  ///< contact tolerance that the metrics were made for, relative to the radius
+  float stop_resolution;      ///< bake stop rule: least resolution r, 0 where unused
+  float stop_deviation_rel;   ///< bake stop rule: largest surface deviation s, 0 where unused
+  std::uint32_t stop_pieces;  ///< bake stop rule: fewest pieces, 0 where unused
+  float s0_min;               ///< smallest threshold of eq. 7 that this image serves (0: any)
+  float partner_area;         ///< smallest support area of partners that this image serves (0: any)
 
   // What an engine must have room for.
-  std::uint32_t free_levels;       ///< how many of the levels are free (the last ones)
-  std::uint32_t tree_depth;        ///< pieces on the longest path from the root to a leaf
-  std::uint32_t max_children;      ///< of one piece
-  std::uint32_t max_hull_vertices; ///< of one piece
+  std::uint32_t free_levels;          ///< how many of the levels are free (the last ones)
+  std::uint32_t tree_depth;           ///< pieces on the longest path from the root to a leaf
+  std::uint32_t max_children;         ///< of one piece
+  std::uint32_t max_hull_vertices;    ///< of one piece
   std::uint32_t max_patch_triangles;  ///< of one piece
-  std::uint32_t max_valence;       ///< longest neighbour list
-  std::uint32_t leaf_pieces;       ///< pieces of level 0
+  std::uint32_t max_valence;          ///< longest neighbour list
+  std::uint32_t leaf_pieces;          ///< pieces of level 0
   std::uint32_t reserved1[3];
 
   Section sections[kSectionSlots];
@@ -98,47 +122,54 @@ static_assert(offsetof(Header, content_sha256) == 32);
 static_assert(offsetof(Header, centre_m) == 96);
 static_assert(offsetof(Header, sections) == 216);
 
-/// One level of detail (Sec. 4.4). A piece belongs to every level from Piece::level up to the one below its parent's.
+/// One level of detail (Sec. 4.4). A piece belongs to every level from Piece::level up to the one
+/// below its parent's.
 struct Level {
-  std::uint32_t pieces;               ///< pieces alive at this level
-  std::uint32_t triangles;            ///< of the simplified mesh; 0 on free levels
-  std::uint32_t free;                 ///< 1 where made by hull merging alone (no metric)
-  float resolution;                   ///< r, Sec. 4.1, for radius 1; 0 on free levels
-  float max_surface_deviation_rel;    ///< largest s of its pieces
-  float max_hausdorff_rel;            ///< largest h of its pieces
-  float min_support_area_rel;         ///< smallest D of its vertices
+  std::uint32_t pieces;     ///< pieces that belong to this level; 1 on the last
+  std::uint32_t triangles;  ///< of the level's mesh (source_triangles on level 0); 0 on free levels
+  std::uint32_t free;       ///< 1 where made by hull merging alone (no metric)
+  float resolution;         ///< r, Sec. 4.1, for radius 1; 0 on free levels
+  float max_surface_deviation_rel;  ///< largest s of its pieces
+  float max_hausdorff_rel;          ///< largest h of its pieces
+  float min_support_area_rel;       ///< smallest D of its pieces
   std::uint32_t reserved;
 };
 static_assert(sizeof(Level) == 32);
 
 enum class PieceFlag : std::uint32_t {
-  all_real = 1u << 0,     ///< every hull face is of the mesh: a single triangle, a flat convex patch, a closed convex body
-  back_open = 1u << 1,    ///< its virtual faces can be reached from outside (open or self-crossing component)
+  all_real = 1u << 0,  ///< every hull face is of the mesh: a single triangle, a flat convex patch,
+                       ///< a closed convex body. Set where a piece with a patch has no virtual
+                       ///< faces; clear on free levels
+  back_open =
+      1u << 1,  ///< its virtual faces can be reached from outside (open or self-crossing component)
 };
 
-/// A convex piece (Sec. 4.3): the hull of a patch, or of its children's hulls on free levels. Two cache lines; what a query
-/// reads is in the first.
+/// A convex piece (Sec. 4.3): the hull of a patch, or of its children's hulls on free levels. Two
+/// cache lines; what a query reads is in the first.
 struct Piece {
-  float centre[3];                  ///< bounding sphere of the hull
-  float radius;                     ///< rounded up
-  std::uint32_t first_vertex;       ///< into vertices
-  std::uint32_t hull_vertices;      ///< the first ones of its run: extreme points
-  std::uint32_t first_child;        ///< into pieces; kNone on level 0
-  std::uint32_t children;           ///< 0 on level 0
-  std::uint32_t first_neighbour_start;  ///< into neighbour_starts; kNone where hull_vertices <= kAdjacencyAbove
-  std::uint32_t first_neighbour;    ///< into neighbours; kNone likewise
-  std::uint32_t flags;              ///< PieceFlag
-  std::uint32_t level;              ///< level at which the piece was made
-  float surface_deviation;          ///< s, Sec. 4.5: no point of the patch is farther from the original surface
-  float hausdorff;                  ///< h, Sec. 4.5: no point of a descendant is farther outside this hull
-  float resolution;                 ///< r of its level; 0 on free levels
-  float min_support_area;           ///< smallest D of its vertices
+  float centre[3];              ///< bounding sphere of the hull
+  float radius;                 ///< rounded up: every hull vertex is inside in exact arithmetic
+  std::uint32_t first_vertex;   ///< into vertices
+  std::uint32_t hull_vertices;  ///< the first ones of its run: extreme points
+  std::uint32_t first_child;    ///< into pieces; kNone on level 0
+  std::uint32_t children;       ///< 0 on level 0, at least 1 above
+  std::uint32_t first_neighbour_start;  ///< into neighbour_starts; kNone where hull_vertices <=
+                                        ///< kAdjacencyAbove
+  std::uint32_t first_neighbour;        ///< into neighbours; kNone likewise
+  std::uint32_t flags;                  ///< PieceFlag
+  std::uint32_t level;      ///< level at which the piece was made; the last level at the root
+  float surface_deviation;  ///< s, Sec. 4.5: no point of the patch is farther from the original
+                            ///< surface
+  float hausdorff;          ///< h, Sec. 4.5: no point of a descendant is farther outside this hull
+  float resolution;         ///< r of its level; 0 on free levels
+  float min_support_area;   ///< smallest D of its vertices
   // second line
-  std::uint32_t parent;             ///< kNone at the root
-  std::uint32_t vertices;           ///< of its run: hull vertices, then the patch's other vertices
-  std::uint32_t first_triangle;     ///< into triangles; kNone on free levels
-  std::uint32_t triangles;          ///< of its patch
-  std::uint32_t first_virtual_face; ///< into virtual_faces; kNone where there are none
+  std::uint32_t parent;          ///< kNone at the root
+  std::uint32_t vertices;        ///< of its run: hull vertices, then the patch's other vertices
+  std::uint32_t first_triangle;  ///< into triangles; kNone on free levels
+  std::uint32_t triangles;       ///< of its patch; 0 on free levels, at least 1 on others
+  std::uint32_t
+      first_virtual_face;  ///< into virtual_faces; kNone where there are none and on free levels
   std::uint32_t virtual_faces;
   std::uint32_t reserved[10];
 };
@@ -146,15 +177,15 @@ static_assert(sizeof(Piece) == 128);
 
 /// A vertex of a piece, with its support area.
 struct Vertex {
-  float position[3];    ///< relative to the object's centre, divided by its radius
-  float support_area;   ///< D, Sec. 4.5, relative to the radius squared
+  float position[3];   ///< relative to the object's centre, divided by its radius
+  float support_area;  ///< D, Sec. 4.5, relative to the radius squared
 };
 static_assert(sizeof(Vertex) == 16);
 
 /// A triangle of a patch, counter-clockwise seen from outside.
 struct Triangle {
   std::uint32_t vertices[3];  ///< local to the piece's run
-  std::uint32_t source;       ///< index of the triangle in the source mesh; kNone on simplified levels
+  std::uint32_t source;  ///< index of the triangle in the source mesh; kNone on simplified levels
 };
 static_assert(sizeof(Triangle) == 16);
 
