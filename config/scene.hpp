@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes: what a user writes in scene.toml. config/README.md documents every key with unit, range and default.
+// Scenes: what a user writes in scene.toml. config/README.md documents every key with unit, range
+// and default.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +14,8 @@
 
 namespace palpate::config {
 
-/// A scene file is refused. The message reads `WHAT: FILE:LINE: HOW TO MEND`; the command line exits with 2.
+/// A scene file is refused. The message reads `WHAT: FILE:LINE: HOW TO MEND`; the command line
+/// exits with 2.
 struct ConfigError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -28,7 +30,7 @@ struct Body {
   std::string name;
   std::filesystem::path image;  ///< made absolute, relative ones from the scene file's folder
   Role role = Role::fixed;
-  Pose pose;                    ///< where it is until something moves it
+  Pose pose;  ///< where it is until something moves it
 };
 
 enum class EngineKind { levels, regions };
@@ -39,7 +41,8 @@ struct Waypoint {
   Pose pose;
 };
 
-/// The mock device: a simulated hand that holds the tool (a mass on a spring and a damper whose far end follows the path).
+/// The mock device: a simulated hand that holds the tool (a mass on a spring and a damper whose far
+/// end follows the path).
 struct MockHand {
   double mass_kg = 0.3;
   double inertia_kg_m2 = 1e-4;
@@ -47,25 +50,30 @@ struct MockHand {
   double grip_Nm_per_rad = 0.5;
   double damping_N_s_per_m = 5.0;
   double damping_Nm_s_per_rad = 0.01;
-  std::vector<Waypoint> path;  ///< times ascending from 0; repeated from the start when it ends; empty: the tool's pose
+  std::vector<Waypoint> path;  ///< first at 0 s, times ascending; starts over after the last one;
+                               ///< empty: the tool's pose
 };
 
 struct Scene {
   std::filesystem::path file;
   EngineKind engine = EngineKind::levels;
-  Settings settings;                       ///< [engine] and [force]
-  Limits limits;                           ///< [limits]
-  std::size_t max_memory_bytes = std::size_t(1) << 30;  ///< [limits]: an engine that needs more is refused
-  std::optional<double> budget_us;         ///< of one tick; absent: unlimited in replay
-  double rate_Hz = 1000.0;                 ///< [run]: of the real-time loop
+  /// [engine] and [force]. Unlike the engine's own defaults the wrench is limited: a scene may
+  /// drive a device.
+  Settings settings{.max_force_N = 3.0, .max_torque_Nm = 0.1};
+  Limits limits;  ///< [limits]
+  double max_memory_MB =
+      1000.0;  ///< [limits], 1 MB = 10^6 bytes: a scene that needs more is refused
+  std::optional<double> budget_us;  ///< of one tick; absent: unlimited in replay
+  double rate_Hz = 1000.0;          ///< [run]: of the real-time loop
   std::vector<Body> bodies;
-  std::vector<BodyPair> pairs;             ///< as written, or the tool against every other body
-  std::uint32_t tool = 0;                  ///< index into bodies
-  MockHand hand;                           ///< [mock]
+  std::vector<BodyPair> pairs;  ///< as written, or the tool against every other body
+  std::uint32_t tool = 0;       ///< index into bodies
+  MockHand hand;                ///< [mock]
 };
 
-/// Reads and checks a scene file. Unknown keys, wrong types, out-of-range values, two tools or none, unknown body names, bad
-/// quaternions: ConfigError with file, line and the allowed range. Images are not opened.
+/// Reads and checks a scene file. Not readable, not TOML, unknown keys, wrong types, out-of-range
+/// values, two tools or none, unknown or repeated body names, bad quaternions: ConfigError with
+/// file, line and what is allowed. Images are not opened.
 Scene load_scene(const std::filesystem::path& file);
 
 }  // namespace palpate::config
