@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contact engine: poses in, wrench, contacts and certificate out, inside a budget, on memory that the caller hands over once.
+// The contact engine: poses in, wrench, contacts and certificate out, inside a budget, on memory
+// that the caller hands over once.
 //
-// Source: Otaduy and Lin, Sensation Preserving Simplification for Haptic Rendering, SIGGRAPH 2003, Sec. 5 and Appendix B.
-// Departures are stated at the declarations; docs/DESIGN.md gives the reasons.
+// Source: Otaduy and Lin, Sensation Preserving Simplification for Haptic Rendering, SIGGRAPH 2003,
+// Sec. 5 and Appendix B. Departures are stated at the declarations; docs/DESIGN.md gives the
+// reasons.
 #pragma once
 
 #include <cstddef>
@@ -27,45 +29,53 @@ struct BodyPair {
 
 /// What the engine works on. All spans and images must outlive the engine.
 struct Scene {
-  std::span<const ImageView> bodies;  ///< 1 to kMaxBodies validated images; one image may appear more than once
-  std::span<const BodyPair> pairs;    ///< 1 to kMaxPairs
-  std::uint32_t tool = 0;             ///< the body that the device holds: the wrench is the one on it
+  std::span<const ImageView>
+      bodies;  ///< 1 to kMaxBodies validated images; one image may appear more than once
+  std::span<const BodyPair> pairs;  ///< 1 to kMaxPairs
+  std::uint32_t tool = 0;           ///< the body that the device holds: the wrench is the one on it
 };
 
 /// How contacts are found and turned into forces.
 struct Settings {
-  double delta_m = 0.0005;      ///< contact tolerance delta: features nearer than this are contacts; > 0
-  double s0 = 0.025;            ///< threshold of eq. 7, relative to the radius of the body that loses the detail; >= 0
-  bool exact = false;           ///< refine every pair below delta to the original surface, whatever s0 says
-  bool interpolate = true;      ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
-  double stiffness_N_per_m = 600.0;   ///< of the penalty force of one cluster; >= 0
-  double cluster_radius_m = 0.003;    ///< contacts nearer than this to a cluster's representative join it; >= 0
-  double max_force_N = std::numeric_limits<double>::infinity();    ///< the wrench's force is scaled down to this length
-  double max_torque_Nm = std::numeric_limits<double>::infinity();  ///< the wrench's torque is scaled down to this length
+  double delta_m =
+      0.0005;          ///< contact tolerance delta: features nearer than this are contacts; > 0
+  double s0 = 0.025;   ///< threshold of eq. 7, relative to the radius of the body that loses the
+                       ///< detail; >= 0
+  bool exact = false;  ///< refine every pair below delta to the original surface, whatever s0 says
+  bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
+  double stiffness_N_per_m = 600.0;  ///< of the penalty force of one cluster; >= 0
+  double cluster_radius_m =
+      0.003;  ///< contacts nearer than this to a cluster's representative join it; >= 0
+  double max_force_N = std::numeric_limits<double>::infinity();    ///< the wrench's force is scaled
+                                                                   ///< down to this length
+  double max_torque_Nm = std::numeric_limits<double>::infinity();  ///< the wrench's torque is
+                                                                   ///< scaled down to this length
 };
 
 /// Capacities; more memory, never more time.
 struct Limits {
-  std::uint32_t nodes = 1u << 17;    ///< nodes of the bounding volume test tree over all pairs
-  std::uint32_t contacts = 1u << 14; ///< contacts of one tick over all pairs
-  std::uint32_t clusters = 256;      ///< clusters of one tick over all pairs
+  std::uint32_t nodes = 1u << 17;     ///< nodes of the bounding volume test tree over all pairs
+  std::uint32_t contacts = 1u << 14;  ///< contacts of one tick over all pairs
+  std::uint32_t clusters = 256;       ///< clusters of one tick over all pairs
 };
 
-/// What one tick may spend. Refinement ends at whichever limit is met first; the answer is valid all the same.
+/// What one tick may spend. Refinement ends at whichever limit is met first; the answer is valid
+/// all the same.
 struct Budget {
   std::uint64_t units = std::numeric_limits<std::uint64_t>::max();  ///< convex-pair queries
   std::uint64_t (*clock_ns)(void* context) = nullptr;  ///< a monotonic clock, or null: units only
   void* clock_context = nullptr;
-  std::uint64_t deadline_ns = 0;   ///< refinement stops at clock_ns() >= deadline_ns; ignored without a clock
+  std::uint64_t deadline_ns =
+      0;  ///< refinement stops at clock_ns() >= deadline_ns; ignored without a clock
 };
 
 /// A pair of closest points of two pieces nearer than delta. World axes.
 struct Contact {
-  Vec3d point_a_m{};     ///< on the surface of body a
-  Vec3d point_b_m{};     ///< on the surface of body b
-  Vec3d normal{};        ///< unit, from b to a
-  double distance_m = 0; ///< signed: negative where the pieces overlap
-  double weight = 0;     ///< share of the force of its cluster (the representative's is 1)
+  Vec3d point_a_m{};      ///< on the surface of body a
+  Vec3d point_b_m{};      ///< on the surface of body b
+  Vec3d normal{};         ///< unit, from b to a
+  double distance_m = 0;  ///< signed: negative where the pieces overlap
+  double weight = 0;      ///< share of the force of its cluster (the representative's is 1)
   std::uint32_t pair = 0;
   std::uint32_t piece_a = 0, level_a = 0;
   std::uint32_t piece_b = 0, level_b = 0;
@@ -73,44 +83,56 @@ struct Contact {
 
 /// What is certain about the answer.
 struct Certificate {
-  double error_bound_m = 0;  ///< the true least distance is within this of the reported one; where no contact is reported, of delta
-  double s_worst = 0;        ///< largest weighted surface deviation left unrefined, relative to the radius
+  double error_bound_m = 0;  ///< the true least distance is within this of the reported one; where
+                             ///< no contact is reported, of delta
+  double s_worst =
+      0;  ///< largest weighted surface deviation left unrefined, relative to the radius
   std::uint64_t units_used = 0;
-  bool truncated_by_time = false;     ///< the clock ended refinement
-  bool truncated_by_units = false;    ///< the work units ended refinement
-  bool truncated_by_memory = false;   ///< nodes or contacts were used up
-  bool iteration_cap_met = false;     ///< a convex query gave its best so far
-  [[nodiscard]] bool truncated() const noexcept { return truncated_by_time || truncated_by_units || truncated_by_memory; }
+  bool truncated_by_time = false;    ///< the clock ended refinement
+  bool truncated_by_units = false;   ///< the work units ended refinement
+  bool truncated_by_memory = false;  ///< nodes or contacts were used up
+  bool iteration_cap_met = false;    ///< a convex query gave its best so far
+  [[nodiscard]] bool truncated() const noexcept {
+    return truncated_by_time || truncated_by_units || truncated_by_memory;
+  }
 };
 
 struct TickResult {
-  Wrench wrench;                        ///< on the tool, world axes, torque about the origin of the tool's body frame
-  std::span<const Contact> contacts;    ///< valid until the next tick; order is deterministic
+  Wrench wrench;  ///< on the tool, world axes, torque about the origin of the tool's body frame
+  std::span<const Contact> contacts;  ///< valid until the next tick; order is deterministic
   std::uint32_t clusters = 0;
-  double min_distance_m = std::numeric_limits<double>::quiet_NaN();  ///< least over contacts; NaN where there are none
-  std::uint64_t front_nodes = 0;        ///< leaves of the bounding volume test tree at the end of the tick
-  std::uint64_t queries = 0;            ///< convex-pair queries done
+  double min_distance_m =
+      std::numeric_limits<double>::quiet_NaN();  ///< least over contacts; NaN where there are none
+  std::uint64_t front_nodes =
+      0;                      ///< leaves of the bounding volume test tree at the end of the tick
+  std::uint64_t queries = 0;  ///< convex-pair queries done
   Certificate certificate;
 };
 
 class Engine;
 
-/// Bytes that create() needs for this scene and these limits; 0 where the scene or the limits are out of range. O(bodies).
+/// Bytes that create() needs for this scene and these limits; 0 where the scene or the limits are
+/// out of range. O(bodies).
 [[nodiscard]] std::size_t required_bytes(const Scene& scene, const Limits& limits) noexcept;
 
-/// Makes an engine inside `memory` (64-byte aligned, at least required_bytes). It needs no destruction: drop the memory.
-/// Errors: bad_argument, not_enough_memory, image_missing_section. Touches every byte of the memory it will use.
-Status create(const Scene& scene, const Settings& settings, const Limits& limits, std::span<std::byte> memory, Engine*& out_engine) noexcept;
+/// Makes an engine inside `memory` (64-byte aligned, at least required_bytes). It needs no
+/// destruction: drop the memory. Errors: bad_argument, not_enough_memory, image_missing_section.
+/// Touches every byte of the memory it will use.
+Status create(const Scene& scene, const Settings& settings, const Limits& limits,
+              std::span<std::byte> memory, Engine*& out_engine) noexcept;
 
 /// Replaces the settings between ticks. Errors: bad_argument (nothing is changed).
 Status configure(Engine& engine, const Settings& settings) noexcept;
 
 /// One contact query and its wrench.
 ///
-/// @param poses  [bodies] body to world; finite, quaternions of unit length within 1e-3 (they are normalised)
+/// @param poses  [bodies] body to world; finite, quaternions of unit length within 1e-3 (they are
+/// normalised)
 /// @param out    written only where the result is Status::ok
-/// Errors: bad_pose, bad_argument. Cost: the budget, plus at most one convex query and a tail that is linear in the front,
-/// the contacts and contacts * clusters. No allocation, no lock, no recursion, bounded stack.
-Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget, TickResult& out) noexcept;
+/// Errors: bad_pose, bad_argument. Cost: the budget, plus at most one convex query and a tail that
+/// is linear in the front, the contacts and contacts * clusters. No allocation, no lock, no
+/// recursion, bounded stack.
+Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
+            TickResult& out) noexcept;
 
 }  // namespace palpate

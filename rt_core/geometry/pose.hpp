@@ -11,7 +11,8 @@ struct Quat {
   double w = 1, x = 0, y = 0, z = 0;
 };
 
-/// Where a body is: maps body coordinates to world coordinates, x_world = R(orientation) x_body + position_m.
+/// Where a body is: maps body coordinates to world coordinates, x_world = R(orientation) x_body +
+/// position_m.
 struct Pose {
   Vec3d position_m{};
   Quat orientation{};
@@ -34,11 +35,13 @@ inline Mat3d rotation(const Quat& q) noexcept {
 }
 
 inline Quat operator*(const Quat& a, const Quat& b) noexcept {
-  return {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-          a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+  return {
+      a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+      a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
 }
 
-/// Rigid map from the coordinates of b to those of a: x_a = rotation x_b + translation. Lengths in the unit of the context.
+/// Rigid map from the coordinates of b to those of a: x_a = rotation x_b + translation. Lengths in
+/// the unit of the context.
 struct RelativePose {
   Mat3d rotation{};
   Vec3d translation{};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Three-vectors and 3x3 matrices. Plain structs, no expression templates: the same operations in the same order on every
-// target and at every optimisation level, which bit-identical wrenches need.
+// Three-vectors and 3x3 matrices. Plain structs, no expression templates: the same operations in
+// the same order on every target and at every optimisation level, which bit-identical wrenches
+// need.
 #pragma once
 
 namespace palpate {
@@ -13,34 +14,55 @@ using Vec3f = Vec3<float>;
 using Vec3d = Vec3<double>;
 
 template <class T>
-constexpr Vec3<T> operator+(Vec3<T> a, Vec3<T> b) noexcept { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+constexpr Vec3<T> operator+(Vec3<T> a, Vec3<T> b) noexcept {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
 template <class T>
-constexpr Vec3<T> operator-(Vec3<T> a, Vec3<T> b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+constexpr Vec3<T> operator-(Vec3<T> a, Vec3<T> b) noexcept {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 template <class T>
-constexpr Vec3<T> operator-(Vec3<T> a) noexcept { return {-a.x, -a.y, -a.z}; }
+constexpr Vec3<T> operator-(Vec3<T> a) noexcept {
+  return {-a.x, -a.y, -a.z};
+}
 template <class T>
-constexpr Vec3<T> operator*(T s, Vec3<T> a) noexcept { return {s * a.x, s * a.y, s * a.z}; }
+constexpr Vec3<T> operator*(T s, Vec3<T> a) noexcept {
+  return {s * a.x, s * a.y, s * a.z};
+}
 template <class T>
-constexpr Vec3<T>& operator+=(Vec3<T>& a, Vec3<T> b) noexcept { return a = a + b; }
+constexpr Vec3<T>& operator+=(Vec3<T>& a, Vec3<T> b) noexcept {
+  return a = a + b;
+}
 template <class T>
-constexpr Vec3<T>& operator-=(Vec3<T>& a, Vec3<T> b) noexcept { return a = a - b; }
+constexpr Vec3<T>& operator-=(Vec3<T>& a, Vec3<T> b) noexcept {
+  return a = a - b;
+}
 template <class T>
-constexpr bool operator==(Vec3<T> a, Vec3<T> b) noexcept { return a.x == b.x && a.y == b.y && a.z == b.z; }
+constexpr bool operator==(Vec3<T> a, Vec3<T> b) noexcept {
+  return a.x == b.x && a.y == b.y && a.z == b.z;
+}
 template <class T>
-constexpr T dot(Vec3<T> a, Vec3<T> b) noexcept { return a.x * b.x + a.y * b.y + a.z * b.z; }
+constexpr T dot(Vec3<T> a, Vec3<T> b) noexcept {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 template <class T>
 constexpr Vec3<T> cross(Vec3<T> a, Vec3<T> b) noexcept {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 template <class T>
-constexpr T squared_norm(Vec3<T> a) noexcept { return dot(a, a); }
+constexpr T squared_norm(Vec3<T> a) noexcept {
+  return dot(a, a);
+}
 
-/// Correctly rounded on every target: compiles to the square-root instruction or the C library's sqrt.
+/// Correctly rounded on every target: compiles to the square-root instruction or the C library's
+/// sqrt.
 inline double sqrt_of(double v) noexcept { return __builtin_sqrt(v); }
 inline float sqrt_of(float v) noexcept { return __builtin_sqrtf(v); }
 
 template <class T>
-inline T norm(Vec3<T> a) noexcept { return sqrt_of(squared_norm(a)); }
+inline T norm(Vec3<T> a) noexcept {
+  return sqrt_of(squared_norm(a));
+}
 
 template <class To, class From>
 constexpr Vec3<To> vec_cast(Vec3<From> a) noexcept {
@@ -56,10 +78,14 @@ using Mat3f = Mat3<float>;
 using Mat3d = Mat3<double>;
 
 template <class T>
-constexpr Vec3<T> operator*(const Mat3<T>& m, Vec3<T> v) noexcept { return {dot(m.row0, v), dot(m.row1, v), dot(m.row2, v)}; }
+constexpr Vec3<T> operator*(const Mat3<T>& m, Vec3<T> v) noexcept {
+  return {dot(m.row0, v), dot(m.row1, v), dot(m.row2, v)};
+}
 template <class T>
 constexpr Mat3<T> transpose(const Mat3<T>& m) noexcept {
-  return {{m.row0.x, m.row1.x, m.row2.x}, {m.row0.y, m.row1.y, m.row2.y}, {m.row0.z, m.row1.z, m.row2.z}};
+  return {{m.row0.x, m.row1.x, m.row2.x},
+          {m.row0.y, m.row1.y, m.row2.y},
+          {m.row0.z, m.row1.z, m.row2.z}};
 }
 template <class T>
 constexpr Mat3<T> operator*(const Mat3<T>& a, const Mat3<T>& b) noexcept {

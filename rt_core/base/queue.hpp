@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// A binary min-heap over borrowed memory.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "rt_core/base/assert.hpp"
+
+namespace palpate {
+
+/// Smallest first by `less(a, b)`, which must be a strict total order for results that do not
+/// depend on history.
+template <class T, class Less>
+class MinQueue {
+ public:
+  explicit MinQueue(std::span<T> storage, Less less = {}) noexcept
+      : storage_(storage), less_(less) {}
+
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+  [[nodiscard]] std::span<const T> items() const noexcept {
+    return storage_.first(size_);
+  }  ///< in heap order
+  [[nodiscard]] const T& top() const noexcept { return storage_[0]; }
+
+  void push(const T& item) noexcept {  ///< O(log n)
+    PALPATE_ASSERT(size_ < storage_.size());
+    std::size_t hole = size_++;
+    while (hole > 0) {
+      const std::size_t parent = (hole - 1) / 2;
+      if (!less_(item, storage_[parent])) break;
+      storage_[hole] = storage_[parent];
+      hole = parent;
+    }
+    storage_[hole] = item;
+  }
+
+  void pop() noexcept {  ///< O(log n)
+    PALPATE_ASSERT(size_ > 0);
+    const T item = storage_[--size_];
+    std::size_t hole = 0;
+    while (true) {
+      std::size_t child = 2 * hole + 1;
+      if (child >= size_) break;
+      if (child + 1 < size_ && less_(storage_[child + 1], storage_[child])) ++child;
+      if (!less_(storage_[child], item)) break;
+      storage_[hole] = storage_[child];
+      hole = child;
+    }
+    storage_[hole] = item;
+  }
+
+ private:
+  std::span<T> storage_;
+  std::size_t size_ = 0;
+  Less less_;
+};
+
+}  // namespace palpate

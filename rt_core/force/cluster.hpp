@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contacts into clusters, clusters into a wrench (Appendix B, steps 3 to 6).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "rt_core/palpate_rt.hpp"
+
+namespace palpate::force {
+
+/// A group of contacts that is felt as one.
+struct Cluster {
+  std::uint32_t contact = 0;  ///< its representative: the contact of least distance
+  Vec3d point_m{};            ///< between the representative's points
+};
+
+/// Groups the contacts of each pair: in order of distance, a contact joins the nearest cluster of
+/// its pair whose representative is within radius_m and whose normal is within 60 degrees of its
+/// own; else it founds one. Opposed normals never share a cluster, so that they cannot average to
+/// nothing. The representative is the contact of least distance: the average weighted by distance
+/// that the paper names depends on how many pieces a surface is cut into, the least distance does
+/// not. Sets Contact::weight: 1 for representatives, 0 for the others.
+///
+/// @param order  scratch, [contacts]
+/// @param out    [most clusters]; where they are used up the nearest contacts have theirs, farther
+/// ones add no force Returns the number of clusters. Independent of the order of the contacts up to
+/// exact ties in distance. Cost: O(n log n + n * clusters). No memory.
+std::uint32_t cluster(std::span<Contact> contacts, double radius_m, std::span<std::uint32_t> order,
+                      std::span<Cluster> out) noexcept;
+
+/// Penalty force of every cluster at its representative: k (delta - distance) along the normal, so
+/// that N coincident contacts give the wrench of one. On the tool, torque about tool_origin_m;
+/// scaled down to the limits of the settings. Pairs without the tool contribute nothing.
+Wrench penalty_wrench(std::span<const Contact> contacts, std::span<const Cluster> clusters,
+                      std::span<const BodyPair> pairs, std::uint32_t tool, Vec3d tool_origin_m,
+                      const Settings& settings) noexcept;
+
+}  // namespace palpate::force

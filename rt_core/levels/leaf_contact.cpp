@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/levels/leaf_contact.hpp"
+
+#include <limits>
+
+namespace palpate::levels {
+namespace {
+
+using image::Piece;
+using image::PieceFlag;
+using image::Triangle;
+
+constexpr bool has(const Piece& piece, PieceFlag flag) noexcept {
+  return (piece.flags & static_cast<std::uint32_t>(flag)) != 0;
+}
+
+Vec3d position(const image::Vertex& v) noexcept {
+  return {double{v.position[0]}, double{v.position[1]}, double{v.position[2]}};
+}
+
+double squared_distance_to_segment(Vec3d p, Vec3d from, Vec3d to) noexcept {
+  const Vec3d along = to - from;
+  const double length2 = squared_norm(along);
+  double t = length2 > 0 ? dot(p - from, along) / length2 : 0;
+  t = t < 0 ? 0 : (t > 1 ? 1 : t);
+  return squared_norm(p - from - t * along);
+}
+
+bool on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) noexcept {
+  constexpr double kNear2 = kOnSurface * kOnSurface;
+  const Vec3d normal = cross(b - a, c - a);
+  const double area2 = squared_norm(normal);
+  const double height = dot(p - a, normal);
+  if (height * height > kNear2 * area2) return false;
+  if (area2 > 0 && dot(cross(b - a, p - a), normal) >= 0 && dot(cross(c - b, p - b), normal) >= 0 &&
+      dot(cross(a - c, p - c), normal) >= 0) {
+    return true;
+  }
+  return squared_distance_to_segment(p, a, b) <= kNear2 ||
+         squared_distance_to_segment(p, b, c) <= kNear2 ||
+         squared_distance_to_segment(p, c, a) <= kNear2;
+}
+
+/// Is a point (piece coordinates) that combines `count` hull vertices on the patch of the piece?
+bool on_patch(const ImageView& image, const Piece& piece, Vec3d point,
+              std::uint32_t count) noexcept {
+  if (count == 1 || has(piece, PieceFlag::all_real))
+    return true;  // hull vertices are vertices of the mesh
+  const image::Vertex* vertices = image.vertices.data() + piece.first_vertex;
+  for (std::uint32_t i = 0; i < piece.triangles; ++i) {
+    const Triangle& t = image.triangles[piece.first_triangle + i];
+    if (on_triangle(point, position(vertices[t.vertices[0]]), position(vertices[t.vertices[1]]),
+                    position(vertices[t.vertices[2]]))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// One piece as a run of convex parts: its hull, or the triangles of its patch.
+struct Parts {
+  const ImageView* image = nullptr;
+  const Piece* piece = nullptr;
+  double scale = 1;
+  bool triangles = false;
+  std::uint32_t count = 1;
+};
+
+Parts parts_of(const ImageView& image, const Piece& piece, double scale,
+               bool by_triangle) noexcept {
+  return {&image, &piece, scale, by_triangle, by_triangle ? piece.triangles : 1};
+}
+
+convex::Hull part(const Parts& parts, std::uint32_t i, image::Vertex (&storage)[3]) noexcept {
+  if (!parts.triangles) return hull_of(*parts.image, *parts.piece, parts.scale);
+  const Triangle& t = parts.image->triangles[parts.piece->first_triangle + i];
+  const image::Vertex* vertices = parts.image->vertices.data() + parts.piece->first_vertex;
+  for (int k = 0; k < 3; ++k) storage[k] = vertices[t.vertices[k]];
+  convex::Hull hull;
+  hull.vertices = storage;
+  hull.count = 3;
+  hull.scale = parts.scale;
+  return hull;
+}
+
+Vec3d to_b(const PairState& pair, Vec3d point) noexcept {
+  return transpose(pair.b_in_a.rotation) * (point - pair.b_in_a.translation);
+}
+
+bool witness_a_real(const PairState& pair, const Piece& a, const convex::Distance& d) noexcept {
+  return on_patch(*pair.image_a, a, (1.0 / pair.scale_a) * d.point_a, d.count_a);
+}
+
+bool witness_b_real(const PairState& pair, const Piece& b, const convex::Distance& d) noexcept {
+  return on_patch(*pair.image_b, b, (1.0 / pair.scale_b) * to_b(pair, d.point_b), d.count_b);
+}
+
+LeafContact from_distance(const convex::Distance& d) noexcept {
+  LeafContact contact;
+  contact.found = true;
+  contact.distance = d.distance;
+  contact.lower_bound = d.lower_bound;
+  contact.point_a = d.point_a;
+  contact.point_b = d.point_b;
+  contact.normal = d.normal;
+  contact.capped = d.state == convex::State::gave_up;
+  return contact;
+}
+
+/// The nearest pair of real surface of two patches of which at least one has no inside. found is
+/// false where none is within reach, or where the triangles cross (distance 0): then the hulls tell
+/// depth and direction.
+LeafContact nearest_parts(const PairState& pair, const Piece& a, const Piece& b, double reach,
+                          bool& out_crossing) noexcept {
+  const Parts parts_a = parts_of(*pair.image_a, a, pair.scale_a, has(a, PieceFlag::back_open));
+  const Parts parts_b = parts_of(*pair.image_b, b, pair.scale_b, has(b, PieceFlag::back_open));
+  image::Vertex storage_a[3];
+  image::Vertex storage_b[3];
+  LeafContact best;
+  best.distance = reach;
+  best.lower_bound = reach;
+  std::uint32_t queries = 0;
+  out_crossing = false;
+  for (std::uint32_t i = 0; i < parts_a.count; ++i) {
+    const convex::Hull hull_a = part(parts_a, i, storage_a);
+    for (std::uint32_t j = 0; j < parts_b.count; ++j) {
+      const convex::Hull hull_b = part(parts_b, j, storage_b);
+      convex::Cache cold;
+      const convex::Distance d = convex::distance(hull_a, hull_b, pair.b_in_a, best.distance, cold);
+      ++queries;
+      if (d.state == convex::State::penetrating || d.state == convex::State::touching)
+        out_crossing = true;
+      if (d.distance >= best.distance) continue;
+      if (!parts_a.triangles && !witness_a_real(pair, a, d)) continue;
+      if (!parts_b.triangles && !witness_b_real(pair, b, d)) continue;
+      best = from_distance(d);
+    }
+  }
+  best.queries = queries;
+  return best;
+}
+
+LeafContact overlapping(const PairState& pair, const Piece& a, const Piece& b,
+                        const convex::Cache& cache, convex::PenetrationScratch& scratch) noexcept {
+  const convex::Penetration p =
+      convex::penetration(hull_of(*pair.image_a, a, pair.scale_a),
+                          hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a, cache, scratch);
+  LeafContact contact;
+  contact.found = true;
+  contact.distance = -p.depth;
+  contact.lower_bound = -p.depth;
+  contact.point_a = p.point_a;
+  contact.point_b = p.point_b;
+  contact.normal = p.normal;
+  contact.capped = !p.exact;
+  return contact;
+}
+
+}  // namespace
+
+LeafContact leaf_contact(const PairState& pair, const Piece& a, const Piece& b,
+                         const convex::Distance& query, const convex::Cache& cache, double reach,
+                         convex::PenetrationScratch& scratch) noexcept {
+  const bool overlap =
+      query.state == convex::State::penetrating || query.state == convex::State::touching;
+  const bool virtual_a = overlap ? !has(a, PieceFlag::all_real) : !witness_a_real(pair, a, query);
+  const bool virtual_b = overlap ? !has(b, PieceFlag::all_real) : !witness_b_real(pair, b, query);
+  const bool exposed =
+      (virtual_a && has(a, PieceFlag::back_open)) || (virtual_b && has(b, PieceFlag::back_open));
+  if (exposed) {
+    bool crossing = false;
+    LeafContact nearest = nearest_parts(pair, a, b, reach, crossing);
+    if (!crossing) return nearest;
+    LeafContact contact = overlapping(pair, a, b, cache, scratch);
+    contact.queries = nearest.queries;
+    return contact;
+  }
+  if (overlap) return overlapping(pair, a, b, cache, scratch);
+  if (virtual_a || virtual_b) return {};
+  return from_distance(query);
+}
+
+}  // namespace palpate::levels

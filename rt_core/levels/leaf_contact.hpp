@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// What two leaf pieces contribute: a contact on the surfaces, or nothing.
+#pragma once
+
+#include <cstdint>
+
+#include "rt_core/convex/distance.hpp"
+#include "rt_core/convex/penetration.hpp"
+#include "rt_core/levels/body_pair.hpp"
+
+namespace palpate::levels {
+
+/// In the coordinates of a, lengths in units.
+struct LeafContact {
+  bool found = false;
+  double distance = 0;     ///< signed; the witnesses are this far apart
+  double lower_bound = 0;  ///< of the true signed distance of the two patches
+  Vec3d point_a{};
+  Vec3d point_b{};
+  Vec3d normal{};             ///< unit, from b to a
+  std::uint32_t queries = 0;  ///< convex queries spent beyond the caller's
+  bool capped = false;        ///< an iteration cap was met: [lower_bound, distance] is an interval
+};
+
+/// A point this near to a triangle of a patch lies on it. Baked vertices are rounded to 6e-8 and
+/// hulls are checked against the mesh to 1e-7.
+inline constexpr double kOnSurface = 1e-6;
+
+/// Turns the answer of a convex query of two leaf pieces into a contact.
+///
+/// Disjoint hulls: the witnesses are a contact where both lie on the mesh. A witness on a virtual
+/// face lies inside the solid, behind surface that is nearer to the other body and has its own
+/// piece: the pair contributes nothing (the paper leaves this open). Pieces of open or
+/// self-crossing components have no inside; there the triangles of the patch are queried one by one
+/// instead of the hull. Overlapping hulls: penetration depth and direction (Appendix B, step 2b).
+/// @param query  the result for the hulls of a and b; @param reach only contacts nearer than this
+/// are wanted Cost: none beyond the query for closed meshes; else at most kMaxOpenPatchTriangles^2
+/// queries. Penetration: see convex/.
+LeafContact leaf_contact(const PairState& pair, const image::Piece& a, const image::Piece& b,
+                         const convex::Distance& query, const convex::Cache& cache, double reach,
+                         convex::PenetrationScratch& scratch) noexcept;
+
+}  // namespace palpate::levels
