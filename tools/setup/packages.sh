@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+# Debian 12 packages that the project needs, and how they get there. Sourced by tools/demo and tools/test.
+
+packages_build="g++ cmake ninja-build git ca-certificates libcgal-dev libeigen3-dev libtbb-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev"
+packages_test="libgtest-dev clang libclang-rt-14-dev clang-format clang-tidy binutils python3 gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-newlib g++-aarch64-linux-gnu qemu-user-static"
+
+# need_packages NAME...: installs what is missing; without root by sudo; without either says which are missing and gives up.
+need_packages() {
+  local missing=() name
+  for name in "$@"; do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null || ! sudo -v; then
+      echo "These Debian packages are missing, and there is no root to install them: ${missing[*]}" >&2
+      return 1
+    fi
+    as_root=(sudo)
+  fi
+  echo "Installing ${#missing[@]} packages: ${missing[*]}"
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}
