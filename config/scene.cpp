@@ -1,30 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "config/scene.hpp"
 
-#include <cerrno>
-#include <fstream>
-#include <sstream>
-#include <system_error>
-
 #include "config/read_table.hpp"
+#include "config/text_file.hpp"
 
 namespace palpate::config {
 namespace {
-
-std::string read_text(const std::filesystem::path& file) {
-  errno = 0;
-  const std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (in.is_open()) text << in.rdbuf();
-  // An empty file fails to insert as well, but without a reason; a folder opens and then refuses to
-  // be read.
-  if (!in.is_open() || (text.fail() && errno != 0)) {
-    const std::string reason = std::generic_category().message(errno != 0 ? errno : EIO);
-    throw ConfigError("cannot read the scene (" + reason + "): " + file.string() +
-                      ": give a scene file that exists and is readable");
-  }
-  return text.str();
-}
 
 /// A description of one line and no more.
 std::string one_line(std::string_view text) { return std::string(text.substr(0, text.find('\n'))); }
@@ -199,7 +180,11 @@ class Loader {
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& file) {
-  const std::string text = read_text(file);
+  std::string text;
+  if (const std::error_code error = read_text(file, text)) {
+    throw ConfigError("cannot read the scene (" + error.message() + "): " + file.string() +
+                      ": give a scene file that exists and is readable");
+  }
   toml::table root;
   try {
     root = toml::parse(text);
