@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the sub-commands of `palpate` share. Each sub-command is one file with one add_...() function, listed in main.cpp.
+// What the sub-commands of `palpate` share. Each sub-command is one file with one add_...()
+// function, listed in main.cpp.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,16 +16,25 @@
 namespace palpate::cli {
 
 /// Exit statuses of docs and scripts; see `palpate --help`.
-enum Exit : int { kDone = 0, kOther = 1, kUsage = 2, kRefused = 3, kDevice = 4, kPromiseBroken = 5 };
+enum Exit : int {
+  kDone = 0,
+  kOther = 1,
+  kUsage = 2,
+  kRefused = 3,
+  kDevice = 4,
+  kPromiseBroken = 5
+};
 
-/// Ends the command: one line `palpate: error: WHAT: WHERE: HOW TO MEND` on stderr, then this status.
+/// Ends the command: one line `palpate: error: WHAT: WHERE: HOW TO MEND` on stderr, then this
+/// status.
 struct Failure : std::runtime_error {
   Failure(Exit code_, const std::string& what, const std::string& where, const std::string& mend)
       : std::runtime_error(what + ": " + where + ": " + mend), code(code_) {}
   Exit code;
 };
 
-/// Set by a command that finished but has to report a status other than 0 (a broken promise); printed results stay.
+/// Set by a command that finished but has to report a status other than 0 (a broken promise);
+/// printed results stay.
 void set_exit(Exit code);
 [[nodiscard]] Exit exit_status();
 
@@ -32,9 +42,13 @@ void set_exit(Exit code);
 void write_file(const std::filesystem::path& target, std::span<const std::byte> bytes);
 void write_file(const std::filesystem::path& target, std::string_view text);
 
-/// Shows work that takes longer than a second on stderr: a bar on a terminal (stage, percent, time the stage still takes),
-/// plain lines when piped, nothing with quiet. The bar is wiped when the last copy of the result is destroyed.
+/// Shows work that takes longer than a second on stderr: a bar on a terminal (stage, percent, time
+/// the stage still takes), plain lines when piped, nothing with quiet. The bar is wiped when the
+/// last copy of the result is destroyed.
 bake::Progress progress(bool quiet);
+
+/// For options: a finite number, both ends allowed. CLI::Range lets NaN pass.
+CLI::Validator number_between(double min, double max);
 
 void add_make_model(CLI::App& app);
 void add_check(CLI::App& app);

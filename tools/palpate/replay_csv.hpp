@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a replay writes: TICKS.csv and CONTACTS.csv.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "rt_core/palpate_rt.hpp"
+
+namespace palpate::cli {
+
+inline constexpr std::string_view kTicksHeader =
+    "tick,t,fx,fy,fz,tx,ty,tz,contacts,clusters,min_distance,front,queries,time_ns,truncated,s_"
+    "worst,error_bound";
+inline constexpr std::string_view kContactsHeader =
+    "tick,pair,ax,ay,az,bx,by,bz,nx,ny,nz,distance,piece_a,lod_a,piece_b,lod_b,weight";
+
+/// One tick; the fields are TickResult's.
+struct TickRow {
+  double t_s = 0;
+  Wrench wrench;
+  std::size_t contacts = 0;
+  std::uint32_t clusters = 0;
+  double min_distance_m = 0;  ///< NaN where there are no contacts: an empty field
+  std::uint64_t front_nodes = 0;
+  std::uint64_t queries = 0;
+  std::uint64_t time_ns = 0;
+  Certificate certificate;
+};
+
+struct ContactRow {
+  std::size_t tick = 0;
+  Contact contact;
+};
+
+/// Header and rows, LF line ends. Numbers are the shortest text that reads back as the same double.
+std::string ticks_csv(std::span<const TickRow> rows);
+std::string contacts_csv(std::span<const ContactRow> rows);
+
+}  // namespace palpate::cli
