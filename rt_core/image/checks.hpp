@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// The passes of validate(), in the order in which it makes them. Private to this folder.
+//
+// Each pass may trust what the ones before it have proved. All are O(bytes) with a bounded stack.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "rt_core/base/status.hpp"
+#include "rt_core/image/view.hpp"
+
+namespace palpate::image::checks {
+
+/// True for finite values in [low, high]; false for NaN.
+template <class T>
+constexpr bool within(T value, T low, T high) noexcept {
+  return value >= low && value <= high;
+}
+
+/// Ranges and consistency of the header's own fields. image_bad_header.
+Status check_header(const Header& header) noexcept;
+
+/// Slots, strides, order, bounds and zero padding. `bytes` has header.total_bytes bytes.
+/// image_bad_section, image_missing_section.
+Status check_sections(const Header& header, std::span<const std::byte> bytes) noexcept;
+
+/// The level records alone. image_bad_level, image_bad_float, image_over_limit.
+Status check_levels(const ImageView& image) noexcept;
+
+/// Each piece's record: its numbers, its flags, and its runs, which tile their sections.
+/// image_bad_piece, image_bad_float, image_over_limit.
+Status check_pieces(const ImageView& image) noexcept;
+
+/// Parent and child links form one tree whose levels fall from parent to child. image_bad_tree,
+/// image_over_limit.
+Status check_tree(const ImageView& image) noexcept;
+
+/// Vertex indices of triangles, virtual faces and neighbour lists. image_bad_index.
+Status check_indices(const ImageView& image) noexcept;
+
+/// Positions, support areas and spheres. image_bad_float, image_bad_piece (a vertex outside).
+Status check_vertices(const ImageView& image) noexcept;
+
+/// What the level records say of their pieces. image_bad_level.
+Status check_level_totals(const ImageView& image) noexcept;
+
+/// The capacities in the header are the true ones. image_bad_header.
+Status check_capacities(const ImageView& image) noexcept;
+
+}  // namespace palpate::image::checks
