@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-palpate_test(image_test SOURCES unit/image_sha256_test.cpp unit/image_validate_test.cpp LIBS palpate_rt)
+palpate_test(image_test SOURCES unit/image_sha256.cpp unit/image_validate.cpp LIBS palpate_rt)
