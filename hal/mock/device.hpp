@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mock device: a simulated hand behind the device interface, in real time on a thread of its
+// own or in virtual time.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+
+#include "hal/clock.hpp"
+#include "hal/device.hpp"
+#include "hal/exchange.hpp"
+#include "hal/mock/hand.hpp"
+
+namespace palpate::hal::mock {
+
+enum class TimeBase {
+  real,     ///< start() begins a thread that keeps the rate
+  virtual_  ///< nothing moves but by advance_to(); deterministic
+};
+
+struct Options {
+  double rate_Hz = 2000.0;  ///< of readings; > 0
+  TimeBase time_base = TimeBase::real;
+  int fifo_priority = 0;       ///< of the thread, 1 to 98; 0 or not permitted: an ordinary thread
+  double max_force_N = 20.0;   ///< what it renders at most
+  double max_torque_Nm = 1.0;  ///< what it renders at most
+};
+
+class MockDevice final : public Device {
+ public:
+  MockDevice(HandParameters hand, const Options& options);
+  ~MockDevice() override;
+
+  [[nodiscard]] Capabilities capabilities() const noexcept override;
+  [[nodiscard]] std::optional<DeviceProblem> open() override;
+  [[nodiscard]] std::optional<DeviceProblem> start() override;
+  [[nodiscard]] bool receive(DeviceState& out) noexcept override { return states_.read(out); }
+  void send(const DeviceCommand& command) noexcept override { commands_.write(command); }
+  void stop() noexcept override;
+  [[nodiscard]] std::uint32_t faults() const noexcept override {
+    return faults_.load(std::memory_order_relaxed);
+  }
+
+  /// Virtual time only: lives through every device period up to and including a time. The first
+  /// call sets time zero of the hand and publishes the first reading.
+  void advance_to(std::uint64_t time_ns) noexcept;
+
+ private:
+  void run() noexcept;
+  void begin_at(std::uint64_t time_ns) noexcept;
+  void period(std::uint64_t time_ns) noexcept;
+  void publish(std::uint64_t time_ns) noexcept;
+  [[nodiscard]] Wrench wrench_in_force(std::uint64_t time_ns) noexcept;
+
+  Options options_;
+  HandParameters parameters_;
+  std::uint64_t period_ns_ = 0;
+  std::optional<Hand> hand_;
+  std::uint64_t next_ns_ = 0;  ///< when the next period begins; 0 before the first
+  std::uint64_t sequence_ = 0;
+  DeviceCommand command_;  ///< the last one taken
+  Mailbox<DeviceState> states_;
+  Mailbox<DeviceCommand> commands_;
+  std::atomic<std::uint32_t> faults_{kNoDeviceFault};
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+}  // namespace palpate::hal::mock
