@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a scene file's struct to an engine that is ready to tick.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <new>
+#include <span>
+#include <vector>
+
+#include "config/scene.hpp"
+#include "rt_core/palpate_rt.hpp"
+#include "tools/palpate/image_file.hpp"
+
+namespace palpate::cli {
+
+/// Opens the images of a scene, each file once however many bodies show it, and makes the
+/// engine. Owns all memory.
+class SceneEngine {
+ public:
+  /// @param scene  must outlive this
+  /// Throws Failure: kUsage where this build or the engine cannot serve the scene's settings,
+  /// kRefused where an image is refused or images and engine together need more memory than the
+  /// scene allows.
+  explicit SceneEngine(const config::Scene& scene);
+
+  [[nodiscard]] Engine& engine() { return *engine_; }
+
+  /// A new engine on the same memory, as if nothing had ever ticked.
+  void restart();
+
+  /// [bodies] where the scene puts them.
+  [[nodiscard]] std::vector<Pose> start_poses() const;
+
+  [[nodiscard]] std::size_t image_bytes() const { return image_bytes_; }
+  [[nodiscard]] std::size_t engine_bytes() const { return engine_bytes_; }
+
+ private:
+  void require_memory(std::uintmax_t bytes) const;
+  void open_images();
+  void allocate();
+
+  struct Free {
+    void operator()(std::byte* memory) const {
+      ::operator delete[](memory, std::align_val_t(image::kAlignment));
+    }
+  };
+
+  const config::Scene& config_;
+  std::map<std::filesystem::path, ImageFile> images_;
+  std::vector<ImageView> bodies_;
+  Scene scene_;
+  std::size_t image_bytes_ = 0, engine_bytes_ = 0;
+  std::unique_ptr<std::byte[], Free> memory_;
+  Engine* engine_ = nullptr;
+};
+
+}  // namespace palpate::cli
