@@ -9,11 +9,15 @@
 namespace palpate::convex {
 
 struct Hull {
-  const image::Vertex* vertices = nullptr;    ///< [count] extreme points, hull coordinates (radius 1)
-  std::uint32_t count = 0;                    ///< >= 1
-  const std::uint32_t* starts = nullptr;      ///< [count + 1] into neighbours, or null: no adjacency
-  const std::uint32_t* neighbours = nullptr;  ///< vertex indices; each list's vertices are joined to its vertex by a hull edge
-  double scale = 1;                           ///< > 0; a point of the hull is scale * position
+  /// [count] extreme points, hull coordinates: within 1 of the origin (the object's radius),
+  /// finite.
+  const image::Vertex* vertices = nullptr;
+  std::uint32_t count = 0;  ///< >= 1
+  /// [count + 1] into neighbours, or null: no adjacency, every support search scans all vertices.
+  const std::uint32_t* starts = nullptr;
+  /// Vertex indices; each list's vertices are joined to its vertex by a hull edge, none is missing.
+  const std::uint32_t* neighbours = nullptr;
+  double scale = 1;  ///< > 0; a point of the hull is scale * position
 };
 
 }  // namespace palpate::convex

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/convex/distance.hpp"
+
+#include <limits>
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/convex/minkowski.hpp"
+#include "rt_core/convex/simplex.hpp"
+
+namespace palpate::convex {
+namespace {
+
+/// Distinct points of a - b with their vertices.
+struct Simplex {
+  std::uint32_t count = 0;
+  Vec3d points[4];
+  std::uint32_t a[4] = {};
+  std::uint32_t b[4] = {};
+};
+
+enum class End : std::uint8_t {
+  bounded,     ///< the bounds meet, or the lower one is above the caller's limit
+  on_simplex,  ///< the origin lies on the simplex, which does not enclose it
+  enclosed,    ///< the simplex encloses the origin
+  stalled,     ///< the upper bound stopped shrinking, or the cap was met
+};
+
+struct Search {
+  End end = End::stalled;
+  Simplex simplex;  ///< where not enclosed: the points that carry the nearest one
+  double weights[3] = {};
+  double upper = std::numeric_limits<double>::infinity();
+  double lower = -std::numeric_limits<double>::infinity();  ///< negative: overlap along the normal
+  Vec3d normal{};                                           ///< unit, of the lower bound
+  std::uint32_t iterations = 0;
+};
+
+bool contains(const Simplex& s, std::uint32_t a, std::uint32_t b) noexcept {
+  for (std::uint32_t i = 0; i < s.count; ++i) {
+    if (s.a[i] == a && s.b[i] == b) return true;
+  }
+  return false;
+}
+
+void append(Simplex& s, const DifferencePoint& p) noexcept {
+  s.points[s.count] = p.point;
+  s.a[s.count] = p.a;
+  s.b[s.count] = p.b;
+  ++s.count;
+}
+
+DifferencePoint first_point(const Simplex& s) noexcept { return {s.points[0], s.a[0], s.b[0]}; }
+
+Simplex load(const HullPair& pair, const Cache& cache) noexcept {
+  Simplex s;
+  for (std::uint32_t i = 0; i < cache.count && i < 4; ++i) {
+    PALPATE_ASSERT(cache.a[i] < pair.a.count && cache.b[i] < pair.b.count);
+    if (!contains(s, cache.a[i], cache.b[i])) append(s, difference(pair, cache.a[i], cache.b[i]));
+  }
+  if (s.count == 0) append(s, difference(pair, 0, 0));
+  return s;
+}
+
+void store(const Simplex& s, Cache& cache) noexcept {
+  cache.count = s.count;
+  for (std::uint32_t i = 0; i < s.count; ++i) {
+    cache.a[i] = s.a[i];
+    cache.b[i] = s.b[i];
+  }
+}
+
+/// Drops the points that do not carry the nearest one.
+void reduce(Search& search, const Nearest& nearest) noexcept {
+  const Simplex all = search.simplex;
+  search.simplex.count = 0;
+  for (std::uint32_t i = 0; i < nearest.count; ++i) {
+    const std::uint32_t k = nearest.index[i];
+    append(search.simplex, {all.points[k], all.a[k], all.b[k]});
+    search.weights[i] = nearest.weight[i];
+  }
+}
+
+/// GJK from the simplex in `search`. Its upper bound shrinks strictly, so that it cannot cycle.
+/// @param on_simplex  upper bound at which the origin counts as lying on the simplex
+void run(const HullPair& pair, double on_simplex, double stop_above, Search& search) noexcept {
+  const double unit = extent(pair);
+  const double slack = rounding(pair);
+  search.end = End::stalled;
+  for (; search.iterations < kMaxDistanceIterations; ++search.iterations) {
+    const Nearest nearest = nearest_on_simplex(search.simplex.points, search.simplex.count);
+    if (nearest.count == 4) {
+      search.end = End::enclosed;
+      return;
+    }
+    const double upper = sqrt_of(nearest.squared);
+    if (!(upper < search.upper)) {
+      if (search.iterations > 0) --search.simplex.count;  // the last point brought nothing
+      return;
+    }
+    search.upper = upper;
+    reduce(search, nearest);
+    if (upper <= on_simplex) {
+      search.end = End::on_simplex;
+      return;
+    }
+    const Vec3d normal = (1 / norm(nearest.axis)) * nearest.axis;
+    const DifferencePoint w = support(pair, -normal, first_point(search.simplex));
+    const double lower = dot(normal, w.point) - slack;
+    if (lower > search.lower) {
+      search.lower = lower;
+      search.normal = normal;
+    }
+    if (search.lower > stop_above || upper - search.lower <= kDistanceGap * (unit + upper)) {
+      search.end = End::bounded;
+      ++search.iterations;
+      return;
+    }
+    if (contains(search.simplex, w.a, w.b)) return;
+    append(search.simplex, w);
+  }
+  --search.simplex.count;
+}
+
+/// Adds a weighted vertex to a witness, once for each distinct vertex.
+void add_weight(std::uint32_t vertex, double weight, std::uint32_t (&vertices)[3],
+                double (&weights)[3], std::uint32_t& count) noexcept {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (vertices[i] != vertex) continue;
+    weights[i] += weight;
+    return;
+  }
+  vertices[count] = vertex;
+  weights[count] = weight;
+  ++count;
+}
+
+void set_witnesses(const HullPair& pair, const Search& search, Distance& out) noexcept {
+  for (std::uint32_t i = 0; i < search.simplex.count; ++i) {
+    if (!(search.weights[i] > 0)) continue;
+    add_weight(search.simplex.a[i], search.weights[i], out.vertices_a, out.weights_a, out.count_a);
+    add_weight(search.simplex.b[i], search.weights[i], out.vertices_b, out.weights_b, out.count_b);
+  }
+  for (std::uint32_t i = 0; i < out.count_a; ++i) {
+    out.point_a += out.weights_a[i] * vertex_of_a(pair, out.vertices_a[i]);
+  }
+  for (std::uint32_t i = 0; i < out.count_b; ++i) {
+    out.point_b += out.weights_b[i] * vertex_of_b(pair, out.vertices_b[i]);
+  }
+  out.distance = norm(out.point_a - out.point_b);
+}
+
+/// Tells touching from penetrating where the origin lies on a simplex that does not enclose it: the
+/// hulls touch if they are parted, but for kDistanceAccept, by the normal that GJK finds after a
+/// small shift of a one way or the other; interior points stay enclosed both ways.
+State settle(const HullPair& pair, Search& search) noexcept {
+  // Askew to the coordinate planes and to every direction with small integer components.
+  constexpr Vec3d kAskew{0.3014872, 0.5570963, 0.7737903};
+  const Vec3d shift = (kTouching * extent(pair)) * kAskew;
+  const Vec3d shifts[2] = {shift, -shift};
+  Simplex enclosing = search.simplex;
+  search.lower = -std::numeric_limits<double>::infinity();
+  for (const Vec3d& by : shifts) {
+    RelativePose shifted = pair.b_in_a;
+    shifted.translation += by;
+    const HullPair moved{pair.a, pair.b, shifted};
+    Search again;
+    for (std::uint32_t i = 0; i < search.simplex.count; ++i) {
+      append(again.simplex, difference(moved, search.simplex.a[i], search.simplex.b[i]));
+    }
+    run(moved, 0, std::numeric_limits<double>::infinity(), again);
+    search.iterations += again.iterations;
+    if (again.end == End::enclosed) enclosing = again.simplex;
+    const double lower = again.lower + dot(again.normal, by);  // of the hulls where they are
+    if (lower > search.lower) {
+      search.lower = lower;
+      search.normal = again.normal;
+    }
+  }
+  if (search.lower > -kDistanceAccept * extent(pair)) return State::touching;
+  search.simplex = enclosing;
+  return State::penetrating;
+}
+
+State classify(const HullPair& pair, Search& search) noexcept {
+  const double accept = kDistanceAccept * (extent(pair) + search.upper);
+  switch (search.end) {
+    case End::enclosed:
+      return State::penetrating;
+    case End::on_simplex:
+      return settle(pair, search);
+    case End::bounded:
+      return search.lower > 0 ? State::separated : State::touching;
+    case End::stalled:
+      break;
+  }
+  if (search.lower > 0 && search.upper - search.lower <= accept) return State::separated;
+  return search.upper <= accept ? settle(pair, search) : State::gave_up;
+}
+
+}  // namespace
+
+Distance distance(const Hull& a, const Hull& b, const RelativePose& b_in_a, double stop_above,
+                  Cache& cache) noexcept {
+  constexpr double kOnSimplex = 0.1 * kTouching;
+  PALPATE_ASSERT(a.count > 0 && b.count > 0 && stop_above >= 0);
+  const HullPair pair{a, b, b_in_a};
+  Search search;
+  search.simplex = load(pair, cache);
+  run(pair, kOnSimplex * extent(pair), stop_above, search);
+  Distance out;
+  out.state = classify(pair, search);
+  out.iterations = search.iterations;
+  store(search.simplex, cache);
+  if (out.state == State::penetrating) return out;
+  set_witnesses(pair, search, out);
+  out.normal = search.normal;
+  out.lower_bound = search.lower > 0 ? search.lower : 0;
+  // The witnesses' own rounding can bring them a hair inside the slab.
+  if (out.lower_bound > out.distance) out.lower_bound = out.distance;
+  return out;
+}
+
+void seed(const Hull& a, const Hull& b, const RelativePose& b_in_a, Vec3d direction,
+          Cache& cache) noexcept {
+  const DifferencePoint w = support({a, b, b_in_a}, -direction, {});
+  cache.count = 1;
+  cache.a[0] = w.a;
+  cache.b[0] = w.b;
+}
+
+}  // namespace palpate::convex
