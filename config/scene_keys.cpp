@@ -200,7 +200,7 @@ std::string markdown(const Table<T>& table) {
             " | " + (key.required ? "required" : c.fallback) + " | " + std::string(key.meaning) +
             " |\n";
   }
-  return text + "\n";
+  return text;
 }
 
 }  // namespace
@@ -218,8 +218,9 @@ std::string to_text(double value) {
 
 std::string key_tables() {
   std::string text;
-  for (const Table<Scene>& table : kTables) text += markdown(table);
-  return text + markdown(kWaypointTable) + markdown(kBodyTable) + markdown(kPairTable);
+  for (const Table<Scene>& table : kTables) text += markdown(table) + "\n";
+  return text + markdown(kWaypointTable) + "\n" + markdown(kBodyTable) + "\n" +
+         markdown(kPairTable);
 }
 
 }  // namespace palpate::config
