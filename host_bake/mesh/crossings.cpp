@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "host_bake/mesh/crossings.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/box_intersection_d.h>
+#include <CGAL/intersections.h>
+#include <tbb/concurrent_vector.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <numeric>
+
+namespace palpate::bake {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point3 = Kernel::Point_3;
+using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::uint32_t>;
+using Pair = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Leaves the search from inside its callback.
+struct TooManyMeetings {};
+
+Point3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
+
+/// The first vertex at each vertex's position.
+std::vector<std::uint32_t> first_at_position(const std::vector<Point>& points) {
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::uint32_t{0});
+  std::sort(order.begin(), order.end(), [&points](std::uint32_t a, std::uint32_t b) {
+    return points[a] < points[b] || (points[a] == points[b] && a < b);
+  });
+  std::vector<std::uint32_t> first(points.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool equal = i > 0 && points[order[i]] == points[order[i - 1]];
+    first[order[i]] = equal ? first[order[i - 1]] : order[i];
+  }
+  return first;
+}
+
+/// Two triangles as six points, the shared ones first and in the same places of both.
+struct Couple {
+  std::array<Point3, 3> a, b;
+  int shared = 0;
+};
+
+Couple align(const std::vector<Point>& points, Face a, Face b) {
+  Couple couple;
+  const auto place = [&couple](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
+  for (std::size_t s = 0; s < 3; ++s) {
+    const auto at = static_cast<std::size_t>(couple.shared);
+    const auto in_b = std::find(b.begin() + place(at), b.end(), a[s]);
+    if (in_b == b.end()) continue;
+    std::iter_swap(in_b, b.begin() + place(at));
+    std::swap(a[s], a[at]);
+    ++couple.shared;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    couple.a[i] = to_cgal(points[a[i]]);
+    couple.b[i] = to_cgal(points[b[i]]);
+  }
+  return couple;
+}
+
+/// With a common vertex, any further common point lies on the far side of one triangle or on the
+/// other's.
+bool cross_beyond_vertex(const Couple& c) {
+  const Kernel::Triangle_3 a(c.a[0], c.a[1], c.a[2]);
+  const Kernel::Triangle_3 b(c.b[0], c.b[1], c.b[2]);
+  return CGAL::do_intersect(a, Kernel::Segment_3(c.b[1], c.b[2])) ||
+         CGAL::do_intersect(b, Kernel::Segment_3(c.a[1], c.a[2]));
+}
+
+/// With a common edge, they overlap only when in one plane and on the same side of the edge.
+bool fold_over_edge(const Couple& c) {
+  return CGAL::coplanar(c.a[0], c.a[1], c.a[2], c.b[2]) &&
+         CGAL::coplanar_orientation(c.a[0], c.a[1], c.a[2], c.b[2]) == CGAL::POSITIVE;
+}
+
+bool cross(const std::vector<Point>& points, const Face& a, const Face& b) {
+  const Couple c = align(points, a, b);
+  switch (c.shared) {
+    case 0:
+      return CGAL::do_intersect(Kernel::Triangle_3(c.a[0], c.a[1], c.a[2]),
+                                Kernel::Triangle_3(c.b[0], c.b[1], c.b[2]));
+    case 1:
+      return cross_beyond_vertex(c);
+    case 2:
+      return fold_over_edge(c);
+    default:
+      return true;
+  }
+}
+
+}  // namespace
+
+bool collinear(const Point& a, const Point& b, const Point& c) {
+  return CGAL::collinear(to_cgal(a), to_cgal(b), to_cgal(c));
+}
+
+std::optional<std::vector<Pair>> crossing_pairs(const Mesh& mesh) {
+  const std::vector<std::uint32_t> first = first_at_position(mesh.points);
+  std::vector<Face> faces;
+  std::vector<Box> boxes;
+  for (const Face& f : mesh.faces) {
+    faces.push_back({first[f[0]], first[f[1]], first[f[2]]});
+    const Point &a = mesh.points[f[0]], &b = mesh.points[f[1]], &c = mesh.points[f[2]];
+    if (collinear(a, b, c)) continue;
+    const CGAL::Bbox_3 box = to_cgal(a).bbox() + to_cgal(b).bbox() + to_cgal(c).bbox();
+    boxes.emplace_back(box, static_cast<std::uint32_t>(faces.size() - 1));
+  }
+  const std::size_t limit = kMaxMeetings + kMaxMeetingsPerFace * faces.size();
+  std::atomic<std::size_t> meetings{0};
+  tbb::concurrent_vector<Pair> found;
+  try {
+    CGAL::box_self_intersection_d<CGAL::Parallel_tag>(
+        boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
+          if (meetings.fetch_add(1, std::memory_order_relaxed) >= limit) throw TooManyMeetings{};
+          if (!cross(mesh.points, faces[a.info()], faces[b.info()])) return;
+          found.push_back(std::minmax(a.info(), b.info()));
+        });
+  } catch (const TooManyMeetings&) {
+    return std::nullopt;
+  }
+  std::vector<Pair> pairs(found.begin(), found.end());
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace palpate::bake

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Polygons to triangles.
+#pragma once
+
+#include <span>
+
+#include "host_bake/mesh/mesh.hpp"
+
+namespace palpate::bake {
+
+/// Appends the triangles of one polygon (three corners or more, finite points) to `faces`, same
+/// orientation, no new vertex. Four corners: the diagonal whose two triangles agree best; more:
+/// constrained Delaunay in the polygon's plane (CGAL), right for non-convex ones too, and for those
+/// with holes reached along a bridge. A polygon that crosses itself in that plane, or has no plane,
+/// becomes a fan round its first corner: check() then finds what is wrong. O(n log n).
+void triangulate(const std::vector<Point>& points, std::span<const std::uint32_t> polygon,
+                 std::vector<Face>& faces);
+
+}  // namespace palpate::bake
