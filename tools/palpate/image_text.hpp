@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An image's figures as text for people: `inspect`.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "rt_core/image/view.hpp"
+
+namespace palpate::cli {
+
+/// The header, the figures of the paper's Table 2, and a row a level. Ends with a line break.
+/// Lengths of pieces and levels are for radius 1.
+std::string image_text(const ImageView& image, std::size_t engine_bytes);
+
+}  // namespace palpate::cli
