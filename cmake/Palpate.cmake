@@ -38,14 +38,20 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   list(APPEND PALPATE_RT_FLAGS -fcallgraph-info=su)
 endif()
 
-# palpate_module(TARGET FOLDER SOURCES...): a static library whose public include path holds nothing but `FOLDER/`, so that a
-# target sees only the folders it links.
-function(palpate_module target folder)
+# palpate_shim(FOLDER OUT): an include path that holds nothing but `FOLDER/`.
+function(palpate_shim folder out)
   set(shim "${PROJECT_BINARY_DIR}/include_shims/${folder}")
   file(MAKE_DIRECTORY "${shim}")
   if(NOT EXISTS "${shim}/${folder}")
     file(CREATE_LINK "${PROJECT_SOURCE_DIR}/${folder}" "${shim}/${folder}" SYMBOLIC)
   endif()
+  set(${out} "${shim}" PARENT_SCOPE)
+endfunction()
+
+# palpate_module(TARGET FOLDER SOURCES...): a static library whose public include path holds nothing but `FOLDER/`, so that a
+# target sees only the folders it links.
+function(palpate_module target folder)
+  palpate_shim(${folder} shim)
   add_library(${target} STATIC ${ARGN})
   target_include_directories(${target} PUBLIC
     "$<BUILD_INTERFACE:${shim}>" "$<INSTALL_INTERFACE:include/palpate>")

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// Set-up and the tick: poses, query, force, certificate.
+#include <limits>
+
+#include "rt_core/base/arena.hpp"
+#include "rt_core/base/meter.hpp"
+#include "rt_core/force/cluster.hpp"
+#include "rt_core/levels/levels_engine.hpp"
+#include "rt_core/palpate_rt.hpp"
+
+namespace palpate {
+
+class Engine {
+ public:
+  std::span<const BodyPair> pairs;
+  std::uint32_t bodies = 0;
+  std::uint32_t tool = 0;
+  Settings settings;
+  std::span<Pose> poses;  // of this tick, normalised
+  levels::QueryMemory query;
+  std::span<std::uint32_t> order;
+  std::span<force::Cluster> clusters;
+};
+
+namespace {
+
+constexpr double kUnitQuaternion = 1e-3;
+/// What rounding of float vertices, transforms and queries leaves of a distance, in units of the
+/// larger radius.
+constexpr double kNumericalError = 5e-7;
+
+bool finite(double v) noexcept { return v - v == 0; }
+bool finite(Vec3d v) noexcept { return finite(v.x) && finite(v.y) && finite(v.z); }
+bool at_least(double v, double least) noexcept { return v >= least; }  // false for NaN
+
+bool sound(const Settings& s) noexcept {
+  return finite(s.delta_m) && s.delta_m > 0 && finite(s.s0) && at_least(s.s0, 0) &&
+         finite(s.stiffness_N_per_m) && at_least(s.stiffness_N_per_m, 0) &&
+         finite(s.cluster_radius_m) && at_least(s.cluster_radius_m, 0) &&
+         at_least(s.max_force_N, 0) && at_least(s.max_torque_Nm, 0);
+}
+
+bool sound(const Scene& scene, const Limits& limits) noexcept {
+  const std::size_t bodies = scene.bodies.size();
+  if (bodies == 0 || bodies > kMaxBodies || scene.pairs.empty() || scene.pairs.size() > kMaxPairs ||
+      scene.tool >= bodies)
+    return false;
+  for (const ImageView& body : scene.bodies) {
+    if (body.header == nullptr) return false;
+  }
+  for (const BodyPair& pair : scene.pairs) {
+    if (pair.a >= bodies || pair.b >= bodies || pair.a == pair.b) return false;
+  }
+  return limits.nodes >= scene.pairs.size() && limits.nodes < levels::kNone &&
+         limits.contacts > 0 && limits.clusters > 0;
+}
+
+/// All memory of an engine, in one place: counted and handed out by the same lines.
+Engine* lay_out(Arena& arena, const Scene& scene, const Limits& limits) noexcept {
+  const auto engine = arena.array<Engine>(1);
+  const auto pairs = arena.array<levels::PairState>(scene.pairs.size());
+  const auto poses = arena.array<Pose>(scene.bodies.size());
+  const auto nodes = arena.array<levels::Node>(limits.nodes);
+  const auto front = arena.array<std::uint32_t>(limits.nodes);
+  const auto waiting = arena.array<levels::Waiting>(limits.nodes);
+  const auto contacts = arena.array<Contact>(limits.contacts);
+  const auto order = arena.array<std::uint32_t>(limits.contacts);
+  const auto clusters = arena.array<force::Cluster>(limits.clusters);
+  const auto scratch = arena.array<convex::PenetrationScratch>(1);
+  if (engine.empty() || scratch.empty()) return nullptr;
+  Engine& e = engine[0];
+  e.poses = poses;
+  e.query.pairs = pairs;
+  e.query.tree = levels::TestTree(nodes, front);
+  e.query.waiting = waiting;
+  e.query.contacts = contacts;
+  e.query.scratch = &scratch[0];
+  e.order = order;
+  e.clusters = clusters;
+  return &e;
+}
+
+void set_up(levels::PairState& pair, const Scene& scene, const BodyPair& bodies) noexcept {
+  pair.image_a = &scene.bodies[bodies.a];
+  pair.image_b = &scene.bodies[bodies.b];
+  pair.body_a = bodies.a;
+  pair.body_b = bodies.b;
+  const double radius_a = pair.image_a->header->radius_m;
+  const double radius_b = pair.image_b->header->radius_m;
+  pair.unit_m = radius_a > radius_b ? radius_a : radius_b;
+  pair.scale_a = radius_a / pair.unit_m;
+  pair.scale_b = radius_b / pair.unit_m;
+}
+
+bool normalise(const Pose& in, Pose& out) noexcept {
+  const Quat& q = in.orientation;
+  const double length = sqrt_of(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  if (!finite(in.position_m) || !(length >= 1 - kUnitQuaternion && length <= 1 + kUnitQuaternion))
+    return false;
+  out.position_m = in.position_m;
+  out.orientation = {q.w / length, q.x / length, q.y / length, q.z / length};
+  return true;
+}
+
+double largest_unit_m(std::span<const levels::PairState> pairs) noexcept {
+  double unit = 0;
+  for (const levels::PairState& pair : pairs) unit = pair.unit_m > unit ? pair.unit_m : unit;
+  return unit;
+}
+
+Certificate certify(const levels::QueryResult& found, double delta_m, double unit_m,
+                    std::uint64_t units) noexcept {
+  Certificate c;
+  const double nearest =
+      found.contacts > 0 && found.min_distance_m < delta_m ? found.min_distance_m : delta_m;
+  const double open = found.unresolved_lower_m < nearest ? nearest - found.unresolved_lower_m : 0;
+  c.error_bound_m = open + found.capped_gap_m + kNumericalError * unit_m;
+  c.s_worst = found.s_worst;
+  c.units_used = units;
+  c.truncated_by_time = found.truncated_by_time;
+  c.truncated_by_units = found.truncated_by_units;
+  c.truncated_by_memory = found.truncated_by_memory;
+  c.iteration_cap_met = found.iteration_cap_met;
+  return c;
+}
+
+}  // namespace
+
+std::size_t required_bytes(const Scene& scene, const Limits& limits) noexcept {
+  if (!sound(scene, limits)) return 0;
+  Arena count;
+  static_cast<void>(lay_out(count, scene, limits));
+  return count.used();
+}
+
+Status create(const Scene& scene, const Settings& settings, const Limits& limits,
+              std::span<std::byte> memory, Engine*& out_engine) noexcept {
+  if (!sound(scene, limits) || !sound(settings)) return Status::bad_argument;
+  for (const ImageView& body : scene.bodies) {
+    if (body.pieces.empty()) return Status::image_missing_section;
+  }
+  if (memory.size() < required_bytes(scene, limits) ||
+      reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::kAlignment != 0) {
+    return Status::not_enough_memory;
+  }
+  Arena arena(memory);
+  Engine* engine = lay_out(arena, scene, limits);
+  if (engine == nullptr) return Status::not_enough_memory;
+  engine->pairs = scene.pairs;
+  engine->bodies = static_cast<std::uint32_t>(scene.bodies.size());
+  engine->tool = scene.tool;
+  engine->settings = settings;
+  for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
+    levels::PairState& pair = engine->query.pairs[i];
+    set_up(pair, scene, scene.pairs[i]);
+    pair.root = engine->query.tree.add_root(static_cast<std::uint16_t>(i), 0, 0);
+  }
+  out_engine = engine;
+  return Status::ok;
+}
+
+Status configure(Engine& engine, const Settings& settings) noexcept {
+  if (!sound(settings)) return Status::bad_argument;
+  engine.settings = settings;
+  return Status::ok;
+}
+
+Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
+            TickResult& out) noexcept {
+  if (poses.size() != engine.bodies) return Status::bad_argument;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!normalise(poses[i], engine.poses[i])) return Status::bad_pose;
+  }
+  const Settings& settings = engine.settings;
+  for (levels::PairState& pair : engine.query.pairs) {
+    pair.delta = settings.delta_m / pair.unit_m;
+    levels::move(pair, engine.poses[pair.body_a], engine.poses[pair.body_b]);
+  }
+  Meter meter(budget);
+  const levels::QueryResult found = levels::query(engine.query, meter);
+
+  const std::span<Contact> contacts = engine.query.contacts.first(found.contacts);
+  out.contacts = contacts;
+  out.clusters = force::cluster(contacts, settings.cluster_radius_m, engine.order, engine.clusters);
+  out.wrench = force::penalty_wrench(contacts, engine.clusters.first(out.clusters), engine.pairs,
+                                     engine.tool, engine.poses[engine.tool].position_m, settings);
+  out.min_distance_m =
+      found.contacts > 0 ? found.min_distance_m : std::numeric_limits<double>::quiet_NaN();
+  out.front_nodes = engine.query.tree.front().size();
+  out.queries = found.queries;
+  out.certificate =
+      certify(found, settings.delta_m, largest_unit_m(engine.query.pairs), meter.used());
+  return Status::ok;
+}
+
+}  // namespace palpate

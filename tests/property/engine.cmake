@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+if(PALPATE_HOST)
+  find_package(CGAL REQUIRED)
+  palpate_test(engine_exact SOURCES property/engine_exact.cpp LIBS palpate_bake CGAL::CGAL LABEL property)
+  palpate_test(engine_budget SOURCES property/engine_budget.cpp LIBS palpate_bake CGAL::CGAL LABEL property)
+  palpate_test(engine_refusals SOURCES fault/engine_refusals.cpp LIBS palpate_bake LABEL unit)
+endif()
