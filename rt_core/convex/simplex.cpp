@@ -16,24 +16,6 @@ Nearest nearest_on_point(const Vec3d* points, std::uint32_t i) noexcept {
   return n;
 }
 
-/// Twice the area vector, from the two shorter edges: the smallest rounding of the three choices.
-/// `out_scale` is the product of their squared lengths, so that |normal|^2 = sine^2 * scale.
-Vec3d area_normal(Vec3d e01, Vec3d e12, Vec3d e20, double& out_scale) noexcept {
-  const double l01 = squared_norm(e01);
-  const double l12 = squared_norm(e12);
-  const double l20 = squared_norm(e20);
-  if (l01 >= l12 && l01 >= l20) {
-    out_scale = l12 * l20;
-    return cross(e12, e20);
-  }
-  if (l12 >= l20) {
-    out_scale = l20 * l01;
-    return cross(e20, e01);
-  }
-  out_scale = l01 * l12;
-  return cross(e01, e12);
-}
-
 void keep_nearer(Nearest& best, const Nearest& candidate) noexcept {
   if (best.count == 0 || candidate.squared < best.squared) best = candidate;
 }
@@ -80,6 +62,25 @@ Nearest nearest_on_tetrahedron(const Vec3d* p) noexcept {
 
 }  // namespace
 
+Vec3d area_normal(Vec3d p0, Vec3d p1, Vec3d p2, double& out_scale) noexcept {
+  const Vec3d e01 = p1 - p0;
+  const Vec3d e12 = p2 - p1;
+  const Vec3d e20 = p0 - p2;
+  const double l01 = squared_norm(e01);
+  const double l12 = squared_norm(e12);
+  const double l20 = squared_norm(e20);
+  if (l01 >= l12 && l01 >= l20) {
+    out_scale = l12 * l20;
+    return cross(e12, e20);
+  }
+  if (l12 >= l20) {
+    out_scale = l20 * l01;
+    return cross(e20, e01);
+  }
+  out_scale = l01 * l12;
+  return cross(e01, e12);
+}
+
 Nearest nearest_on_segment(const Vec3d* points, std::uint32_t i, std::uint32_t j) noexcept {
   const Vec3d edge = points[j] - points[i];
   const double length2 = squared_norm(edge);
@@ -105,16 +106,13 @@ Nearest nearest_on_triangle(const Vec3d* points, std::uint32_t i, std::uint32_t 
   const Vec3d p0 = points[i];
   const Vec3d p1 = points[j];
   const Vec3d p2 = points[k];
-  const Vec3d e01 = p1 - p0;
-  const Vec3d e12 = p2 - p1;
-  const Vec3d e20 = p0 - p2;
   double scale = 0;
-  const Vec3d normal = area_normal(e01, e12, e20, scale);
+  const Vec3d normal = area_normal(p0, p1, p2, scale);
   const double normal2 = squared_norm(normal);
   // Barycentric coordinates of the origin's projection, times normal2.
-  const double w0 = dot(normal, cross(p1, e12));
-  const double w1 = dot(normal, cross(p2, e20));
-  const double w2 = dot(normal, cross(p0, e01));
+  const double w0 = dot(normal, cross(p1, p2 - p1));
+  const double w1 = dot(normal, cross(p2, p0 - p2));
+  const double w2 = dot(normal, cross(p0, p1 - p0));
   const bool flat = !(normal2 > kMinSine * kMinSine * scale);
   if (!flat && w0 > 0 && w1 > 0 && w2 > 0) {
     const double height = dot(normal, p0);

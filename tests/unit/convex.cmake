@@ -1,3 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-set(convex_shapes "${CMAKE_CURRENT_LIST_DIR}/convex_shapes.cpp")
-palpate_test(test_convex_random SOURCES "${CMAKE_CURRENT_LIST_DIR}/convex_random.cpp" ${convex_shapes} LIBS palpate_rt)
+foreach(part random penetration)
+  palpate_test(test_convex_${part}
+    SOURCES "${CMAKE_CURRENT_LIST_DIR}/convex_${part}.cpp" "${CMAKE_CURRENT_LIST_DIR}/convex_shapes.cpp"
+    LIBS palpate_rt)
+endforeach()
