@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/realtime/host_checks.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
+namespace palpate::realtime {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint64_t kWantedPriority = 80;
+
+/// The first line of a small file; absent where it cannot be read.
+std::optional<std::string> first_line(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  if (!in) return std::nullopt;
+  std::getline(in, line);
+  return line;
+}
+
+std::string number_or_unlimited(std::uint64_t value, const char* unit) {
+  return value == kUnlimited ? "unlimited" : std::to_string(value) + unit;
+}
+
+HostCheck make(std::string name, bool ok, std::string found, std::string wanted, std::string mend) {
+  return {std::move(name), ok, std::move(found), std::move(wanted), ok ? "" : std::move(mend)};
+}
+
+HostCheck kernel_preemption(const fs::path& root) {
+  const std::string version = first_line(root / "proc/version").value_or("unknown kernel");
+  const bool realtime = first_line(root / "sys/kernel/realtime").value_or("0") == "1" ||
+                        version.find("PREEMPT_RT") != std::string::npos;
+  std::string found = "no preemption";
+  for (const char* model : {"PREEMPT", "PREEMPT_DYNAMIC"}) {
+    if (version.find(model) != std::string::npos) found = model;
+  }
+  return make("kernel_preemption", realtime, realtime ? "PREEMPT_RT" : found, "PREEMPT_RT",
+              "sudo apt install linux-image-rt-amd64 && sudo reboot");
+}
+
+HostCheck rtprio_limit(const HostRights& rights) {
+  const bool ok = rights.any_priority || rights.max_fifo_priority >= kWantedPriority;
+  return make(
+      "rtprio_limit", ok,
+      rights.any_priority ? "any (CAP_SYS_NICE)"
+                          : number_or_unlimited(rights.max_fifo_priority, ""),
+      "at least " + std::to_string(kWantedPriority),
+      "echo \"$USER - rtprio 95\" | sudo tee /etc/security/limits.d/95-palpate-rtprio.conf, "
+      "then log in again");
+}
+
+HostCheck memlock_limit(const HostRights& rights) {
+  const bool ok = rights.any_memory || rights.max_locked_bytes == kUnlimited;
+  return make("memlock_limit", ok,
+              rights.any_memory ? "any (CAP_IPC_LOCK)"
+                                : number_or_unlimited(rights.max_locked_bytes, " bytes"),
+              "unlimited",
+              "echo \"$USER - memlock unlimited\" | sudo tee "
+              "/etc/security/limits.d/95-palpate-memlock.conf, then log in again");
+}
+
+HostCheck realtime_throttling(const fs::path& root) {
+  const std::string found =
+      first_line(root / "proc/sys/kernel/sched_rt_runtime_us").value_or("unknown");
+  return make("realtime_throttling", found == "-1" || found == "950000" || found == "1000000",
+              found + " us of each second for real-time threads", "-1 (no bound) or 950000",
+              "sudo sysctl -w kernel.sched_rt_runtime_us=950000");
+}
+
+HostCheck clock_source(const fs::path& root) {
+  const std::string found =
+      first_line(root / "sys/devices/system/clocksource/clocksource0/current_clocksource")
+          .value_or("unknown");
+  const bool ok = found == "tsc" || found == "arch_sys_counter" || found == "kvm-clock";
+  return make("clock_source", ok, found,
+              "tsc, arch_sys_counter or kvm-clock (read without a system call)",
+              "boot with the kernel parameters: clocksource=tsc tsc=reliable");
+}
+
+HostCheck isolated_cpus(const fs::path& root) {
+  const std::string found = first_line(root / "sys/devices/system/cpu/isolated").value_or("");
+  return make("isolated_cpus", !found.empty(), found.empty() ? "none" : found,
+              "one processor for the loop",
+              "boot with the kernel parameters: isolcpus=1 nohz_full=1 rcu_nocbs=1 irqaffinity=0, "
+              "then palpate run --cpu 1");
+}
+
+HostCheck cpu_dma_latency(const fs::path& root) {
+  const fs::path file = root / "dev/cpu_dma_latency";
+  const bool exists = fs::exists(file);
+  const bool ok = !exists || ::access(file.c_str(), W_OK) == 0;
+  return make("cpu_dma_latency", ok,
+              !exists ? "no processor sleep states"
+              : ok    ? "writable"
+                      : "not writable",
+              "/dev/cpu_dma_latency writable, so that the loop can keep processors awake",
+              "echo 'KERNEL==\"cpu_dma_latency\", GROUP=\"plugdev\", MODE=\"0660\"' | sudo tee "
+              "/etc/udev/rules.d/95-palpate-latency.rules && sudo udevadm trigger "
+              "--name-match=cpu_dma_latency");
+}
+
+HostCheck frequency_scaling(const fs::path& root) {
+  std::error_code unreadable;
+  std::string found;
+  for (const auto& cpu : fs::directory_iterator(root / "sys/devices/system/cpu", unreadable)) {
+    const auto governor = first_line(cpu.path() / "cpufreq/scaling_governor");
+    if (!governor || *governor == "performance") continue;
+    found = *governor;
+  }
+  return make("frequency_scaling", found.empty(), found.empty() ? "none, or performance" : found,
+              "the governor performance on every processor",
+              "echo performance | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor");
+}
+
+HostCheck usb_autosuspend(const fs::path& root) {
+  const auto found = first_line(root / "sys/module/usbcore/parameters/autosuspend");
+  return make("usb_autosuspend", !found || *found == "-1",
+              found ? *found + " s" : "no USB in this kernel",
+              "-1 (never): a suspended device wakes up too late",
+              "echo -1 | sudo tee /sys/module/usbcore/parameters/autosuspend, then plug the device "
+              "in again");
+}
+
+bool flushes_denormals() {
+#if defined(__SSE__)
+  constexpr unsigned kFlushToZeroAndDenormalsAreZero = 0x8040;
+  return (_mm_getcsr() & kFlushToZeroAndDenormalsAreZero) != 0;
+#elif defined(__aarch64__)
+  std::uint64_t fpcr = 0;
+  __asm__("mrs %0, fpcr" : "=r"(fpcr));
+  constexpr std::uint64_t kFlushToZero = std::uint64_t(1) << 24;
+  return (fpcr & kFlushToZero) != 0;
+#else
+  return false;
+#endif
+}
+
+HostCheck denormal_mode() {
+  const bool flushed = flushes_denormals();
+  return make("denormal_mode", !flushed, flushed ? "flushed to zero" : "kept",
+              "kept: the loop, a replay and a device must give the same bits",
+              "do not preload libraries that were built with -ffast-math");
+}
+
+/// Effective capabilities of this process, as a set of bits; none where unknown.
+std::uint64_t effective_capabilities() {
+  std::ifstream status("/proc/self/status");
+  const std::string key = "CapEff:";
+  for (std::string line; std::getline(status, line);) {
+    if (line.compare(0, key.size(), key) == 0)
+      return std::stoull(line.substr(key.size()), nullptr, 16);
+  }
+  return 0;
+}
+
+std::uint64_t soft_limit(int resource) {
+  rlimit limit{};
+  if (getrlimit(static_cast<__rlimit_resource_t>(resource), &limit) != 0) return 0;
+  return limit.rlim_cur == RLIM_INFINITY ? kUnlimited : limit.rlim_cur;
+}
+
+}  // namespace
+
+HostRights host_rights() {
+  // Bits of linux/capability.h.
+  constexpr std::uint64_t kIpcLock = std::uint64_t(1) << 14;
+  constexpr std::uint64_t kSysNice = std::uint64_t(1) << 23;
+  const std::uint64_t capabilities = effective_capabilities();
+  HostRights rights;
+  rights.max_fifo_priority = soft_limit(RLIMIT_RTPRIO);
+  rights.max_locked_bytes = soft_limit(RLIMIT_MEMLOCK);
+  rights.any_priority = (capabilities & kSysNice) != 0;
+  rights.any_memory = (capabilities & kIpcLock) != 0;
+  return rights;
+}
+
+std::vector<HostCheck> check_host(const HostRights& rights, const fs::path& root) {
+  return {kernel_preemption(root), rtprio_limit(rights),
+          memlock_limit(rights),   realtime_throttling(root),
+          clock_source(root),      isolated_cpus(root),
+          cpu_dma_latency(root),   frequency_scaling(root),
+          usb_autosuspend(root),   denormal_mode()};
+}
+
+}  // namespace palpate::realtime
