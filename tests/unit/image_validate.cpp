@@ -3,7 +3,10 @@
 
 #include <bit>
 #include <cstring>
+#include <fstream>
 #include <functional>
+#include <iterator>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -87,6 +90,25 @@ TEST(Validate, View_points_into_the_bytes) {
   EXPECT_EQ(view.triangles.size(), parts.triangles.size());
   EXPECT_EQ(view.virtual_faces.size(), parts.virtual_faces.size());
   EXPECT_EQ(std::memcmp(view.pieces.data(), parts.pieces.data(), view.pieces.size_bytes()), 0);
+}
+
+/// Written by format version 1.0 once and for all: every later reader of 1.x loads it.
+TEST(Validate, Image_of_version_1_0_still_loads) {
+  std::ifstream in(PALPATE_TEST_DATA "/image_1_0.bin", std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  AlignedBytes bytes(text.size());
+  std::memcpy(bytes.data(), text.data(), text.size());
+  ImageView view;
+  ASSERT_EQ(validate(bytes, view), Status::ok);
+  EXPECT_EQ(walk_image(view), "");
+  EXPECT_EQ(view.header->format_minor, 0);
+  EXPECT_EQ(view.header->leaf_pieces, 3u);
+  EXPECT_EQ(view.header->source_triangles, 84u);
+  EXPECT_EQ(view.header->content_sha256[0], 0x32);
+  EXPECT_EQ(view.levels.size(), 3u);
+  EXPECT_EQ(view.pieces.size(), 5u);
+  EXPECT_EQ(view.virtual_faces.size(), 1u);
+  EXPECT_EQ(view.vertices[0].support_area, 0.25f);
 }
 
 TEST(Validate, Refusal_leaves_the_view_alone) {
