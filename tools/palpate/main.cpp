@@ -22,6 +22,12 @@ namespace {
 // In the order in which --help lists them.
 constexpr std::initializer_list<void (*)(CLI::App&)> kCommands = {
     // clang-format off
+    add_check,
+    add_inspect,
+    add_emit,
+    add_replay,
+    add_run,
+    add_doctor,
     // clang-format on
 };
 

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `palpate replay`: the contact engine over recorded poses, without a device.
+#include "tools/palpate/replay_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/palpate/command.hpp"
+#include "tools/palpate/output_file.hpp"
+
+namespace palpate::cli {
+namespace {
+
+struct Arguments {
+  std::string scene, poses, ticks, contacts, engine;
+  bool exact = false, json = false, quiet = false;
+  std::optional<double> s0, budget_us, kappa, force_tolerance_N;
+  ReplayOptions options;
+};
+
+/// The scene as the file has it, then as the command line wants it.
+config::Scene load(const Arguments& a) {
+  if (a.kappa || a.force_tolerance_N) {
+    throw Failure(
+        kUsage,
+        "--kappa and --force-tolerance are for the regions engine, which this build does not have",
+        "palpate replay", "leave them out");
+  }
+  if (a.contacts == a.ticks) {
+    throw Failure(kUsage, "ticks and contacts cannot be one file", a.ticks,
+                  "give --contacts another name");
+  }
+  config::Scene scene = config::load_scene(a.scene);
+  if (a.engine == "levels") scene.engine = config::EngineKind::levels;
+  if (a.engine == "regions") scene.engine = config::EngineKind::regions;
+  if (a.exact) scene.settings.exact = true;
+  if (a.s0) scene.settings.s0 = *a.s0;
+  if (a.exact || a.budget_us || a.options.budget_units) scene.budget_us = a.budget_us;
+  return scene;
+}
+
+/// The figures of a replay, in the units of their names.
+struct Summary {
+  std::uint64_t p50_ns = 0, p99_ns = 0, max_ns = 0;
+  double contacts_mean = 0, force_mean_N = 0, force_max_N = 0;
+  std::size_t truncated = 0;
+};
+
+Summary summarise(std::span<const TickRow> ticks) {
+  Summary s;
+  std::vector<std::uint64_t> times;
+  for (const TickRow& row : ticks) {
+    const double share = 1.0 / double(ticks.size());
+    const double force_N = norm(row.wrench.force_N);
+    times.push_back(row.time_ns);
+    s.contacts_mean += share * double(row.contacts);
+    s.force_mean_N += share * force_N;
+    s.force_max_N = std::max(s.force_max_N, force_N);
+    if (row.certificate.truncated()) ++s.truncated;
+  }
+  std::sort(times.begin(), times.end());
+  s.p50_ns = times[times.size() / 2];
+  s.p99_ns = times[times.size() * 99 / 100];
+  s.max_ns = times.back();
+  return s;
+}
+
+void print_json(const Recording& recording, const Summary& s) {
+  const nlohmann::ordered_json json = {
+      {"ticks", recording.ticks.size()},
+      {"tick_ns", {{"p50", s.p50_ns}, {"p99", s.p99_ns}, {"max", s.max_ns}}},
+      {"contacts_mean", s.contacts_mean},
+      {"force_N", {{"mean", s.force_mean_N}, {"max", s.force_max_N}}},
+      {"truncated", s.truncated},
+      {"image_bytes", recording.image_bytes},
+      {"engine_bytes", recording.engine_bytes}};
+  std::puts(json.dump().c_str());
+}
+
+void print_text(const Recording& recording, const Summary& s) {
+  std::printf(
+      "%zu ticks: median %.1f us, p99 %.1f us, max %.1f us; %.1f contacts and %.3g N on average; "
+      "%zu truncated\n",
+      recording.ticks.size(), double(s.p50_ns) * 1e-3, double(s.p99_ns) * 1e-3,
+      double(s.max_ns) * 1e-3, s.contacts_mean, s.force_mean_N, s.truncated);
+}
+
+/// Both files or none.
+void write(const Recording& recording, const Arguments& a) {
+  const std::string ticks = ticks_csv(recording.ticks);
+  OutputFile ticks_file(a.ticks, std::as_bytes(std::span(ticks)));
+  if (!a.contacts.empty()) {
+    const std::string contacts = contacts_csv(recording.contacts);
+    OutputFile(a.contacts, std::as_bytes(std::span(contacts))).commit();
+  }
+  ticks_file.commit();
+}
+
+void run(const Arguments& a) {
+  const config::Scene scene = load(a);
+  const PoseTrack track = read_poses(a.poses, scene);
+  const bake::Progress show = progress(a.quiet);
+  const Recording recording =
+      replay(scene, track, a.options, [&](double done) { show("replay", done); });
+  write(recording, a);
+  const Summary summary = summarise(recording.ticks);
+  if (a.json) {
+    print_json(recording, summary);
+  } else if (!a.quiet) {
+    print_text(recording, summary);
+  }
+}
+
+void add_budget(CLI::App& command, Arguments& a) {
+  CLI::Option* time =
+      command.add_option("--budget-us", a.budget_us, "stop refining a tick after this time (us)");
+  CLI::Option* units =
+      command.add_option("--budget-units", a.options.budget_units,
+                         "stop refining a tick after this many convex-pair queries: repeatable");
+  time->check(number_between(0, 1e9))->excludes(units);
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("replay", "Run the contact engine over recorded poses, without a device");
+  const auto a = std::make_shared<Arguments>();
+  command->add_option("SCENE", a->scene, "scene file (TOML)")->required();
+  command->add_option("--poses", a->poses, "recorded poses (CSV)")->required();
+  command->add_option("-o,--output", a->ticks, "write a row a tick (CSV)")->required();
+  command->add_option("--contacts", a->contacts, "write a row a contact (CSV)");
+  command->add_option("--engine", a->engine, "in place of the scene's engine")
+      ->check(CLI::IsMember({"levels", "regions"}));
+  command->add_flag("--exact", a->exact,
+                    "refine to the original surface; unlimited unless a budget is given here, "
+                    "whatever the scene says");
+  command->add_option("--s0", a->s0, "in place of the scene's s0")->check(number_between(0, 1e6));
+  add_budget(*command, *a);
+  command->add_option("--kappa", a->kappa, "regions engine only");
+  command->add_option("--force-tolerance", a->force_tolerance_N, "regions engine only");
+  command
+      ->add_option("--repeat", a->options.repeat,
+                   "replay this often, report the last one with the median times")
+      ->check(CLI::Range(1, 1000));
+  command->add_flag("--json", a->json, "print the summary as one JSON object");
+  command->add_flag("--quiet", a->quiet, "print no progress and no summary");
+  command->callback([a] {
+    a->options.keep_contacts = !a->contacts.empty();
+    run(*a);
+  });
+}
+
+}  // namespace palpate::cli

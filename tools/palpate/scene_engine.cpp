@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/palpate/scene_engine.hpp"
+
+#include <string>
+#include <system_error>
+
+#include "config/scene_keys.hpp"
+#include "tools/palpate/command.hpp"
+
+namespace palpate::cli {
+
+SceneEngine::SceneEngine(const config::Scene& scene) : config_(scene) {
+  if (config_.engine == config::EngineKind::regions) {
+    throw Failure(kUsage, "this build has no regions engine", config_.file.string(),
+                  "use engine = \"levels\" or --engine levels");
+  }
+  open_images();
+  allocate();
+  restart();
+}
+
+void SceneEngine::require_memory(std::uintmax_t bytes) const {
+  const double needed_MB = static_cast<double>(bytes) * 1e-6;
+  if (needed_MB <= config_.max_memory_MB) return;
+  throw Failure(
+      kRefused,
+      "the scene needs " + config::to_text(needed_MB) + " MB of memory, more than it allows",
+      config_.file.string(), "raise max_memory_MB in [limits] or use smaller images");
+}
+
+void SceneEngine::open_images() {
+  for (const config::Body& body : config_.bodies) {
+    auto found = images_.find(body.image);
+    if (found == images_.end()) {
+      // Before the image is read: what is too large may be too large to read. What cannot be read
+      // has no size here, and ImageFile says why.
+      std::error_code no_size;
+      const std::uintmax_t size = std::filesystem::file_size(body.image, no_size);
+      if (!no_size) require_memory(image_bytes_ + size);
+      found = images_.emplace(body.image, ImageFile(body.image)).first;
+      image_bytes_ += found->second.bytes().size();
+    }
+    bodies_.push_back(found->second.view());
+  }
+  scene_ = {bodies_, config_.pairs, config_.tool};
+}
+
+void SceneEngine::allocate() {
+  engine_bytes_ = required_bytes(scene_, config_.limits);
+  if (engine_bytes_ == 0) {
+    throw Failure(kUsage, "the engine cannot work within these [limits]", config_.file.string(),
+                  "raise or remove nodes, contacts and clusters");
+  }
+  require_memory(image_bytes_ + engine_bytes_);
+  memory_.reset(new (std::align_val_t(image::kAlignment)) std::byte[engine_bytes_]);
+}
+
+void SceneEngine::restart() {
+  const std::span<std::byte> memory(memory_.get(), engine_bytes_);
+  const Status status = create(scene_, config_.settings, config_.limits, memory, engine_);
+  if (status == Status::ok) return;
+  const Exit code = status == Status::image_missing_section || status == Status::image_over_limit
+                        ? kRefused
+                        : kUsage;
+  throw Failure(code, std::string("the engine refuses the scene (") + describe(status) + ")",
+                config_.file.string(),
+                "check [engine], [force], [limits] and that the images were baked for this engine");
+}
+
+std::vector<Pose> SceneEngine::start_poses() const {
+  std::vector<Pose> poses;
+  for (const config::Body& body : config_.bodies) poses.push_back(body.pose);
+  return poses;
+}
+
+}  // namespace palpate::cli
