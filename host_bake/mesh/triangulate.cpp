@@ -9,6 +9,9 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
 
 namespace palpate::bake {
 namespace {
@@ -17,13 +20,14 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Vector = Kernel::Vector_3;
 using Plane = CGAL::Projection_traits_3<Kernel>;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Plane>;
-using OutsideBase = CGAL::Triangulation_face_base_with_info_2<bool, Plane>;
-using FaceBase = CGAL::Constrained_triangulation_face_base_2<Plane, OutsideBase>;
+using InsideBase = CGAL::Triangulation_face_base_with_info_2<bool, Plane>;
+using FaceBase = CGAL::Constrained_triangulation_face_base_2<Plane, InsideBase>;
 using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
 using Delaunay = CGAL::Constrained_Delaunay_triangulation_2<Plane, Structure,
                                                             CGAL::No_constraint_intersection_tag>;
 
 using Polygon = std::span<const std::uint32_t>;
+using Side = std::pair<std::uint32_t, std::uint32_t>;
 
 Vector difference(const Point& to, const Point& from) {
   return {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
@@ -61,17 +65,51 @@ void split_quad(const std::vector<Point>& points, Polygon q, std::vector<Face>& 
   }
 }
 
-/// Marks the triangles that can be reached from infinity without crossing the polygon.
-void mark_outside(Delaunay& plane) {
-  for (const auto face : plane.all_face_handles()) face->info() = false;
+/// The sides of the polygon that part inside from outside. A bridge to a hole is walked both ways
+/// and parts nothing.
+std::set<Side> parting_sides(Polygon polygon) {
+  std::set<Side> sides;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Side side = std::minmax(polygon[i], polygon[(i + 1) % polygon.size()]);
+    if (side.first == side.second) continue;
+    if (!sides.insert(side).second) sides.erase(side);
+  }
+  return sides;
+}
+
+/// False where two vertices share a place in the plane or two sides cross.
+bool insert(Delaunay& plane, const std::vector<Point>& points, Polygon polygon) {
+  std::map<std::uint32_t, Delaunay::Vertex_handle> handles;
+  for (const std::uint32_t corner : polygon) {
+    if (handles.count(corner) > 0) continue;
+    const Point& p = points[corner];
+    const Delaunay::Vertex_handle handle = plane.insert(Kernel::Point_3(p[0], p[1], p[2]));
+    handle->info() = corner;
+    handles.emplace(corner, handle);
+  }
+  if (plane.dimension() != 2 || plane.number_of_vertices() != handles.size()) return false;
+  try {
+    for (const auto& [a, b] : parting_sides(polygon))
+      plane.insert_constraint(handles[a], handles[b]);
+  } catch (const Delaunay::Intersection_of_constraints_exception&) {
+    return false;
+  }
+  return true;
+}
+
+/// Sets info() of each triangle to whether it lies inside, walking in from infinity.
+void mark_inside(Delaunay& plane) {
   std::vector<Delaunay::Face_handle> open{plane.infinite_face()};
+  std::set<Delaunay::Face_handle> reached{open.front()};
+  open.front()->info() = false;
   while (!open.empty()) {
     const Delaunay::Face_handle face = open.back();
     open.pop_back();
-    if (face->info()) continue;
-    face->info() = true;
     for (int i = 0; i < 3; ++i) {
-      if (!face->is_constrained(i)) open.push_back(face->neighbor(i));
+      const Delaunay::Face_handle next = face->neighbor(i);
+      if (!reached.insert(next).second) continue;
+      next->info() = face->info() != face->is_constrained(i);
+      open.push_back(next);
     }
   }
 }
@@ -80,31 +118,15 @@ void mark_outside(Delaunay& plane) {
 bool split_in_plane(const std::vector<Point>& points, Polygon polygon, const Vector& normal,
                     std::vector<Face>& faces) {
   Delaunay plane{Plane(normal)};
-  std::vector<Delaunay::Vertex_handle> handles;
-  for (const std::uint32_t corner : polygon) {
-    const Point& p = points[corner];
-    const std::size_t before = plane.number_of_vertices();
-    handles.push_back(plane.insert(Kernel::Point_3(p[0], p[1], p[2])));
-    if (plane.number_of_vertices() > before) handles.back()->info() = corner;
-    if (handles.back()->info() != corner) return false;
-  }
-  if (plane.dimension() != 2) return false;
-  try {
-    for (std::size_t i = 0; i < handles.size(); ++i) {
-      plane.insert_constraint(handles[i], handles[(i + 1) % handles.size()]);
-    }
-  } catch (const Delaunay::Intersection_of_constraints_exception&) {
-    return false;
-  }
-  mark_outside(plane);
+  if (!insert(plane, points, polygon)) return false;
+  mark_inside(plane);
   const std::size_t before = faces.size();
   for (const auto face : plane.finite_face_handles()) {
-    if (face->info()) continue;
+    if (!face->info()) continue;
     // The plane is seen along the normal, so its counter-clockwise is the polygon's.
     faces.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
   }
-  // So many there are where the polygon is simple, or leads to a hole and back along one bridge
-  // edge.
+  // So many there are where the polygon is simple, or leads to a hole and back along a bridge.
   if (faces.size() - before == polygon.size() - 2) return true;
   faces.resize(before);
   return false;
