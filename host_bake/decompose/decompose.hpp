@@ -14,23 +14,28 @@ namespace palpate::bake {
 
 /// A convex patch and its hull.
 struct Patch {
-  std::vector<std::uint32_t> faces;      ///< of the mesh, ascending; every face belongs to exactly one patch
-  std::vector<std::uint32_t> vertices;   ///< of the mesh: hull vertices first (in the order of hull.vertices), then the others
-  HullMesh hull;                         ///< hull.vertices are indices into `vertices`: 0, 1, 2, ... (see above)
-  std::vector<std::array<std::uint32_t, 3>> virtual_faces;  ///< hull faces that the patch does not cover; local indices
-  bool all_real = false;                 ///< no virtual faces
-  bool back_open = false;                ///< of a component that is open or crosses itself
+  std::vector<std::uint32_t>
+      faces;  ///< of the mesh, ascending; every face belongs to exactly one patch
+  std::vector<std::uint32_t> vertices;  ///< of the mesh: hull vertices first (in the order of
+                                        ///< hull.vertices), then the others
+  HullMesh hull;  ///< hull.vertices are indices into `vertices`: 0, 1, 2, ... (see above)
+  std::vector<std::array<std::uint32_t, 3>>
+      virtual_faces;       ///< hull faces that the patch does not cover; local indices
+  bool all_real = false;   ///< no virtual faces
+  bool back_open = false;  ///< of a component that is open or crosses itself
 };
 
 /// Divides the surface into patches that meet the three convexity constraints of Sec. 4.3:
 ///  1. interior edges are convex (exact predicate on the float vertices);
 ///  2. no vertex of a patch is strictly above the plane of a face of the patch;
-///  3. no face of the mesh enters the hull's interior (shrunk by 1e-7), and a patch whose hull has no interior is a convex
+///  3. no face of the mesh enters the hull's interior (shrunk by 1e-7), and a patch whose hull has
+///  no interior is a convex
 ///     polygon without virtual area: neither cuts nor lids.
-/// Grown from the faces farthest from any reflex or boundary edge (their cresting breadth-first search).
-/// Faces in report.crossing_faces are patches of their own; patches of components that are open or cross themselves have at
-/// most image::kMaxOpenPatchTriangles faces.
-/// Deterministic whatever the number of threads.
-std::vector<Patch> decompose(const NormalMesh& mesh, const CheckReport& report, unsigned threads, const Progress& progress);
+/// Grown from the faces farthest from any reflex or boundary edge (their cresting breadth-first
+/// search). Faces in report.crossing_faces are patches of their own; patches of components that are
+/// open or cross themselves have at most image::kMaxOpenPatchTriangles faces. Deterministic
+/// whatever the number of threads.
+std::vector<Patch> decompose(const NormalMesh& mesh, const CheckReport& report, unsigned threads,
+                             const Progress& progress);
 
 }  // namespace palpate::bake
