@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "host_bake/metrics/hull_side.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "host_bake/metrics/exact.hpp"
 #include "host_bake/metrics/vector.hpp"
 
 namespace palpate::bake {
 namespace {
-
-using Exact = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-Exact::Point_3 exact(const PointF& p) { return {p[0], p[1], p[2]}; }
 
 double largest(Vec3d v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 // (b - a) x (c - a) . (p - a) in double, |p - a| <= 2.01: off by less than 100 roundings of its
 // largest term.
 constexpr double kPlaneRoundings = 256 * 2.01 * std::numeric_limits<double>::epsilon();
+
+Vec3d closest_on_segment(Vec3d p, Vec3d a, Vec3d b) {
+  const double length_squared = squared_norm(b - a);
+  if (length_squared == 0) return a;
+  return a + std::clamp(dot(p - a, b - a) / length_squared, 0.0, 1.0) * (b - a);
+}
 
 // Closest point of a triangle; source: Ericson, Real-Time Collision Detection, 2005, Sec. 5.1.5.
 Vec3d closest_on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
@@ -60,10 +61,7 @@ bool HullSide::below_all_planes(const PointF& p) const {
     const Plane& plane = planes_[i];
     if (dot(plane.normal, at - plane.origin) < -plane.certain) continue;
     const auto& f = faces_[i];
-    if (CGAL::orientation(exact(points_[f[0]]), exact(points_[f[1]]), exact(points_[f[2]]),
-                          exact(p)) == CGAL::POSITIVE) {
-      return false;
-    }
+    if (side_of_plane(points_[f[0]], points_[f[1]], points_[f[2]], p) > 0) return false;
   }
   return true;
 }
@@ -85,6 +83,9 @@ double HullSide::distance(const PointF& p) const {
     const Vec3d closest =
         closest_on_triangle(at, vec(points_[f[0]]), vec(points_[f[1]]), vec(points_[f[2]]));
     least = std::min(least, norm(at - closest));
+  }
+  if (dimension_ < 2) {
+    least = norm(at - closest_on_segment(at, vec(points_.front()), vec(points_.back())));
   }
   return least;
 }

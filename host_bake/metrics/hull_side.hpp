@@ -12,17 +12,17 @@
 
 namespace palpate::bake {
 
-/// A hull of dimension 2 or 3, prepared for many points. Borrows its arguments.
+/// A hull, prepared for many points. Borrows its arguments.
 class HullSide {
  public:
   /// @param points     its extreme points, inside the unit ball (up to rounding)
   /// @param faces      indices into points, counter-clockwise seen from outside; both sides of a
   /// flat hull
-  /// @param dimension  2 or 3
+  /// @param dimension  of the hull, as in HullMesh
   HullSide(std::span<const PointF> points, std::span<const std::array<std::uint32_t, 3>> faces,
            int dimension);
 
-  /// In the hull or on it; exact. O(faces) for a solid hull, O(points log points) for a flat one.
+  /// In the hull or on it; exact. O(faces) for a solid hull, O(points log points) for lesser ones.
   [[nodiscard]] bool contains(const PointF& p) const;
 
   /// 0 where contains(p), else the distance to the hull in double. O(faces).

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "host_bake/verify/evidence.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace palpate::bake {
+namespace {
+
+std::vector<PointF> positions(const ImageView& image, const image::Piece& piece) {
+  std::vector<PointF> points;
+  points.reserve(piece.vertices);
+  for (const image::Vertex& v : image.vertices.subspan(piece.first_vertex, piece.vertices)) {
+    points.push_back({v.position[0], v.position[1], v.position[2]});
+  }
+  return points;
+}
+
+HullMesh hull_of(std::span<const PointF> points) {
+  HullMesh hull = convex_hull(points);
+  for (auto& face : hull.faces) {
+    for (std::uint32_t& v : face) v = hull.vertices[v];
+  }
+  return hull;
+}
+
+}  // namespace
+
+Evidence gather(const ImageView& image) {
+  Evidence evidence{image, {}, {}};
+  evidence.points.resize(image.pieces.size());
+  evidence.hulls.resize(image.pieces.size());
+  tbb::parallel_for(std::size_t{0}, image.pieces.size(), [&](std::size_t i) {
+    evidence.points[i] = positions(image, image.pieces[i]);
+    evidence.hulls[i] = hull_of(hull_points(evidence, static_cast<std::uint32_t>(i)));
+  });
+  return evidence;
+}
+
+std::span<const PointF> hull_points(const Evidence& evidence, std::uint32_t piece) {
+  return std::span(evidence.points[piece]).first(evidence.image.pieces[piece].hull_vertices);
+}
+
+std::span<const image::Triangle> patch(const Evidence& evidence, const image::Piece& piece) {
+  if (piece.triangles == 0) return {};
+  return evidence.image.triangles.subspan(piece.first_triangle, piece.triangles);
+}
+
+Proof prove_each(const std::string& invariant, std::size_t pieces,
+                 const std::function<std::string(std::uint32_t)>& check) {
+  std::vector<std::string> wrong(pieces);
+  tbb::parallel_for(std::size_t{0}, pieces,
+                    [&](std::size_t i) { wrong[i] = check(static_cast<std::uint32_t>(i)); });
+  const auto first =
+      std::find_if(wrong.begin(), wrong.end(), [](const std::string& w) { return !w.empty(); });
+  if (first == wrong.end()) return {invariant, true, std::to_string(pieces) + " pieces"};
+  const auto failures =
+      std::count_if(first, wrong.end(), [](const std::string& w) { return !w.empty(); });
+  return {invariant, false,
+          "piece " + std::to_string(first - wrong.begin()) + ": " + *first + " (" +
+              std::to_string(failures) + " pieces fail)"};
+}
+
+}  // namespace palpate::bake

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the proofs of verify() share: an image, and its hulls computed anew from their vertices.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host_bake/bake.hpp"
+#include "host_bake/hull/hull.hpp"
+#include "rt_core/image/view.hpp"
+
+namespace palpate::bake {
+
+struct Evidence {
+  ImageView image;
+  std::vector<std::vector<PointF>> points;  ///< [pieces] each run's positions, hull vertices first
+  std::vector<HullMesh> hulls;  ///< [pieces] of the hull vertices; indices local to the run
+};
+
+/// Recomputes all hulls, in parallel. O(n log n).
+Evidence gather(const ImageView& image);
+
+/// The hull vertices' positions of a piece.
+std::span<const PointF> hull_points(const Evidence& evidence, std::uint32_t piece);
+
+/// The triangles of a piece's patch.
+std::span<const image::Triangle> patch(const Evidence& evidence, const image::Piece& piece);
+
+/// Runs a check on every piece, in parallel. A check returns an empty string, or what is wrong.
+/// The proof's `found` is the number of pieces checked, or the first piece that fails and why.
+Proof prove_each(const std::string& invariant, std::size_t pieces,
+                 const std::function<std::string(std::uint32_t)>& check);
+
+}  // namespace palpate::bake

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The proofs of verify(), one function an invariant. "Exact" means decided by exact predicates on
+// the float coordinates. Tolerances are for radius 1.
+#pragma once
+
+#include "host_bake/verify/evidence.hpp"
+
+namespace palpate::bake {
+
+/// Sec. 4.3, constraint 1: no edge between two triangles of a patch is reflex (exact), and the two
+/// run through it in opposite directions. O(n log n).
+Proof prove_interior_edges_convex(const Evidence& evidence);
+
+/// Sec. 4.3, constraint 2: no vertex of a piece lies above the plane of a triangle of its patch
+/// (exact). O(triangles * valence).
+Proof prove_no_vertex_visible(const Evidence& evidence);
+
+/// Sec. 4.3, constraint 3: on every level that has a mesh, none of its triangles enters the
+/// interior of the solid hull of another patch, shrunk by kIntrusionTolerance.
+Proof prove_no_intrusion(const Evidence& evidence);
+inline constexpr double kIntrusionTolerance = 1e-7 * (1 + 1e-3);  // decompose()'s, and rounding
+
+/// Triangles of the patch and virtual faces together cover each solid hull: all lie on its surface
+/// (exact) and their areas add up to no less than its own (to 1e-9 of it). A flat hull needs no
+/// virtual faces.
+Proof prove_hulls_covered(const Evidence& evidence);
+
+/// The hull vertices are the extreme points of the piece's vertices (exact).
+Proof prove_hull_vertices_extreme(const Evidence& evidence);
+
+/// Neighbour lists hold every edge of the hull, are mutual, and hold nothing else but diagonals of
+/// its facets (exact).
+Proof prove_adjacency(const Evidence& evidence);
+
+/// Every hull vertex is inside its piece's sphere (exact).
+Proof prove_spheres_contain(const Evidence& evidence);
+
+/// Every triangle of the source mesh is in exactly one piece of level 0.
+Proof prove_sources_complete(const Evidence& evidence);
+
+/// A hull of a free level encloses the hulls of its children (exact).
+Proof prove_free_levels_enclose(const Evidence& evidence);
+
+/// h(piece) is at least h(child) plus the distance from the child's hull to the piece's, for every
+/// child (to 1e-9): so no descendant is farther outside than h.
+Proof prove_hausdorff_bounds(const Evidence& evidence);
+
+/// s is 0 on level 0 and never less at a piece than at its children on levels with a mesh.
+Proof prove_deviation_ordered(const Evidence& evidence);
+
+/// Levels with a mesh come first, the coarser the smaller r, which is positive; free levels have
+/// r = 0; each piece has the r of its level.
+Proof prove_resolution_ordered(const Evidence& evidence);
+
+/// D > 0 at every vertex.
+Proof prove_support_areas_positive(const Evidence& evidence);
+
+}  // namespace palpate::bake

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// palpate bake: mesh to image.
+#include "host_bake/bake.hpp"
+
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host_bake/mesh/read.hpp"
+#include "host_bake/pack/aligned.hpp"
+#include "tools/palpate/command.hpp"
+#include "tools/palpate/image_json.hpp"
+#include "tools/palpate/output_file.hpp"
+
+namespace palpate::cli {
+namespace {
+
+constexpr unsigned kMaxThreads = 1024;
+
+struct Options {
+  std::string mesh;
+  std::string image;
+  std::string report;  ///< empty: none
+  std::string engine = "levels";
+  double unit_scale = 1.0;
+  bool repair = false;
+  bool strict = false;
+  bool quiet = false;
+  bake::BakeOptions bake;
+};
+
+struct Baked {
+  std::vector<std::byte> bytes;
+  std::vector<std::string> repairs;
+  bake::BakeReport report;
+};
+
+Baked bake_file(const Options& options) {
+  Baked out;
+  const bake::Progress progress = cli::progress(options.quiet);
+  progress("read", 0);
+  bake::ReadMesh read = bake::read_mesh(options.mesh, options.unit_scale);
+  std::string checked = options.mesh;
+  if (options.repair) {
+    progress("repair", 0);
+    out.repairs = bake::repair(read.mesh).done;
+    checked += " after repair";
+  }
+  progress("check", 0);
+  const bake::CheckReport check = bake::check(read.mesh);
+  bake::require_bakeable(check, checked, options.strict);
+  bake::BakeOptions how = options.bake;
+  how.repaired = !out.repairs.empty();
+  how.source_sha256 = read.sha256;
+  out.bytes = bake::bake(read.mesh, check, how, progress, out.report);
+  return out;
+}
+
+ImageView view_of(const bake::AlignedCopy& image) {
+  ImageView view;
+  if (const Status status = validate(image.bytes(), view); status != Status::ok) {
+    throw std::logic_error(std::string("the baked image is not valid: ") + describe(status));
+  }
+  return view;
+}
+
+std::string report_text(const Baked& baked, const ImageView& image) {
+  nlohmann::json json = image_json(image, engine_bytes(image));
+  json["seconds"] = baked.report.seconds;
+  json["peak_bytes"] = baked.report.peak_bytes;
+  json["threads"] = baked.report.threads;
+  json["rejected"] = baked.report.rejected;
+  json["repairs"] = baked.repairs;
+  return json.dump(2) + "\n";
+}
+
+void print(const Options& options, const Baked& baked, const ImageView& image) {
+  for (const std::string& line : baked.repairs) std::cout << "repair: " << line << "\n";
+  const double seconds =
+      std::accumulate(baked.report.seconds.begin(), baked.report.seconds.end(), 0.0,
+                      [](double sum, const auto& stage) { return sum + stage.second; });
+  char figures[160];
+  std::snprintf(figures, sizeof figures,
+                "%u triangles, %u pieces, %zu levels, %llu bytes, %.1f s, peak memory %.0f MB",
+                image.header->source_triangles, image.header->leaf_pieces, image.levels.size(),
+                static_cast<unsigned long long>(image.header->total_bytes), seconds,
+                static_cast<double>(baked.report.peak_bytes) / 1e6);
+  std::cout << options.image << ": " << figures << "\n";
+}
+
+void bake(const Options& options) {
+  if (options.engine != "levels") {
+    throw Failure(kUsage, "this format version has no section for the regions engine",
+                  "--engine " + options.engine, "use --engine levels");
+  }
+  const Baked baked = bake_file(options);
+  const bake::AlignedCopy image(baked.bytes);
+  const ImageView view = view_of(image);
+  const std::string text = report_text(baked, view);
+  OutputFile image_file(options.image, image.bytes());
+  std::optional<OutputFile> report_file;
+  if (!options.report.empty()) report_file.emplace(options.report, std::as_bytes(std::span(text)));
+  image_file.commit();
+  if (report_file) report_file->commit();
+  if (!options.quiet) print(options, baked, view);
+}
+
+}  // namespace
+
+void add_bake(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("bake", "Make an image from a mesh");
+  command->add_option("MESH", options->mesh, "OBJ, PLY, STL or OFF file")->required();
+  command->add_option("-o,--output", options->image, "Image file")->required();
+  command
+      ->add_option("--delta", options->bake.delta_rel,
+                   "Contact tolerance that the support areas are made for, relative to the radius")
+      ->check(number_between(1e-9, 4))
+      ->capture_default_str();
+  command->add_option("--unit-scale", options->unit_scale, "Metres of one unit of the file")
+      ->check(number_between(1e-15, 1e15))
+      ->capture_default_str();
+  command->add_flag("--repair", options->repair, "Mend what a safe repair can, see check");
+  command->add_flag("--strict", options->strict, "Refuse a mesh whose faces cross one another");
+  command->add_option("--engine", options->engine, "Query engine that the image is for")
+      ->check(CLI::IsMember({"levels", "regions", "both"}))
+      ->capture_default_str();
+  command->add_option("--threads", options->bake.threads, "Threads to use, 0: all cores")
+      ->check(CLI::Range(0u, kMaxThreads))
+      ->capture_default_str();
+  command->add_option("--report", options->report, "Write figures of image and bake as JSON");
+  command->add_flag("--quiet", options->quiet, "Print nothing but errors");
+  command->callback([options] { bake(*options); });
+}
+
+}  // namespace palpate::cli
