@@ -80,24 +80,28 @@ void reduce(Search& search, const Nearest& nearest) noexcept {
   }
 }
 
-/// GJK from the simplex in `search`. Its upper bound shrinks strictly, so that it cannot cycle.
+/// GJK from the simplex in `search`.
+///
+/// Its upper bound may not grow by more than rounding. It need not shrink: beside a needle the
+/// direction can still turn where the distance no longer shows it. Cycles end at the cap.
 /// @param on_simplex  upper bound at which the origin counts as lying on the simplex
 void run(const HullPair& pair, double on_simplex, double stop_above, Search& search) noexcept {
   const double unit = extent(pair);
   const double slack = rounding(pair);
   search.end = End::stalled;
-  for (; search.iterations < kMaxDistanceIterations; ++search.iterations) {
-    const Nearest nearest = nearest_on_simplex(search.simplex.points, search.simplex.count);
+  while (search.iterations < kMaxDistanceIterations) {
+    const Carry carry = search.iterations == 0 ? Carry::any : Carry::last;
+    const Nearest nearest = nearest_on_simplex(search.simplex.points, search.simplex.count, carry);
     if (nearest.count == 4) {
       search.end = End::enclosed;
       return;
     }
     const double upper = sqrt_of(nearest.squared);
-    if (!(upper < search.upper)) {
+    if (!(upper < search.upper + slack)) {
       if (search.iterations > 0) --search.simplex.count;  // the last point brought nothing
       return;
     }
-    search.upper = upper;
+    if (upper < search.upper) search.upper = upper;
     reduce(search, nearest);
     if (upper <= on_simplex) {
       search.end = End::on_simplex;
@@ -105,6 +109,7 @@ void run(const HullPair& pair, double on_simplex, double stop_above, Search& sea
     }
     const Vec3d normal = (1 / norm(nearest.axis)) * nearest.axis;
     const DifferencePoint w = support(pair, -normal, first_point(search.simplex));
+    ++search.iterations;
     const double lower = dot(normal, w.point) - slack;
     if (lower > search.lower) {
       search.lower = lower;
@@ -112,7 +117,6 @@ void run(const HullPair& pair, double on_simplex, double stop_above, Search& sea
     }
     if (search.lower > stop_above || upper - search.lower <= kDistanceGap * (unit + upper)) {
       search.end = End::bounded;
-      ++search.iterations;
       return;
     }
     if (contains(search.simplex, w.a, w.b)) return;
@@ -149,34 +153,50 @@ void set_witnesses(const HullPair& pair, const Search& search, Distance& out) no
   out.distance = norm(out.point_a - out.point_b);
 }
 
-/// Tells touching from penetrating where the origin lies on a simplex that does not enclose it: the
-/// hulls touch if they are parted, but for kDistanceAccept, by the normal that GJK finds after a
-/// small shift of a one way or the other; interior points stay enclosed both ways.
+/// One search with a shifted by `by`. True where the origin is enclosed then; its simplex goes to
+/// `enclosing`. Else the normal found, if it parts the hulls better than what `search` has.
+bool enclosed_when_shifted(const HullPair& pair, Vec3d by, Search& search,
+                           Simplex& enclosing) noexcept {
+  RelativePose shifted = pair.b_in_a;
+  shifted.translation -= by;
+  const HullPair moved{pair.a, pair.b, shifted};
+  Search again;
+  for (std::uint32_t i = 0; i < search.simplex.count; ++i) {
+    append(again.simplex, difference(moved, search.simplex.a[i], search.simplex.b[i]));
+  }
+  run(moved, 0, std::numeric_limits<double>::infinity(), again);
+  search.iterations += again.iterations;
+  if (again.end == End::enclosed) {
+    enclosing = again.simplex;
+    return true;
+  }
+  const double lower = again.lower - dot(again.normal, by);  // of the hulls where they are
+  if (lower > search.lower) {
+    search.lower = lower;
+    search.normal = again.normal;
+  }
+  return false;
+}
+
+/// Tells touching from penetrating where the origin lies on a simplex that does not enclose it.
+///
+/// Hulls that share interior points still do after a small shift of a, one way or the other; where
+/// they only touch, one of the two parts them, and its search finds the normal. Should a needle
+/// leave that open, a larger shift decides; should that too, they count as penetrating.
 State settle(const HullPair& pair, Search& search) noexcept {
   // Askew to the coordinate planes and to every direction with small integer components.
   constexpr Vec3d kAskew{0.3014872, 0.5570963, 0.7737903};
-  const Vec3d shift = (kTouching * extent(pair)) * kAskew;
-  const Vec3d shifts[2] = {shift, -shift};
+  constexpr double kShifts[2] = {kTouching, 30 * kTouching};
+  static_assert(kShifts[1] < kDistanceAccept);
   Simplex enclosing = search.simplex;
   search.lower = -std::numeric_limits<double>::infinity();
-  for (const Vec3d& by : shifts) {
-    RelativePose shifted = pair.b_in_a;
-    shifted.translation += by;
-    const HullPair moved{pair.a, pair.b, shifted};
-    Search again;
-    for (std::uint32_t i = 0; i < search.simplex.count; ++i) {
-      append(again.simplex, difference(moved, search.simplex.a[i], search.simplex.b[i]));
-    }
-    run(moved, 0, std::numeric_limits<double>::infinity(), again);
-    search.iterations += again.iterations;
-    if (again.end == End::enclosed) enclosing = again.simplex;
-    const double lower = again.lower + dot(again.normal, by);  // of the hulls where they are
-    if (lower > search.lower) {
-      search.lower = lower;
-      search.normal = again.normal;
-    }
+  for (const double size : kShifts) {
+    const Vec3d shift = (size * extent(pair)) * kAskew;
+    const bool one = enclosed_when_shifted(pair, shift, search, enclosing);
+    const bool other = enclosed_when_shifted(pair, -shift, search, enclosing);
+    if (search.lower > -kDistanceAccept * extent(pair)) return State::touching;
+    if (one && other) break;
   }
-  if (search.lower > -kDistanceAccept * extent(pair)) return State::touching;
   search.simplex = enclosing;
   return State::penetrating;
 }
@@ -194,7 +214,8 @@ State classify(const HullPair& pair, Search& search) noexcept {
       break;
   }
   if (search.lower > 0 && search.upper - search.lower <= accept) return State::separated;
-  return search.upper <= accept ? settle(pair, search) : State::gave_up;
+  const bool near = search.upper <= accept && accept < std::numeric_limits<double>::infinity();
+  return near ? settle(pair, search) : State::gave_up;
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ struct Cache {
 
 enum class State : std::uint8_t {
   separated,    ///< lower_bound > 0, witnesses valid
-  touching,     ///< distance or depth is within kTouching; normal supports both hulls to that
+  touching,     ///< distance and depth along `normal` are within kTouching, beside needles
+                ///< kDistanceAccept, of nothing
   penetrating,  ///< the hulls share interior points; ask penetration()
   gave_up,      ///< met the cap or rounding: [lower_bound, distance] still holds the truth, the
                 ///< witnesses are the best so far
@@ -49,8 +50,7 @@ inline constexpr std::uint32_t kMaxDistanceIterations = 64;
 // Relative to the sum of the scales.
 inline constexpr double kTouching = 1e-9;      ///< less distance or depth than this is none
 inline constexpr double kDistanceGap = 1e-10;  ///< upper less lower bound at which the search ends
-inline constexpr double kDistanceAccept =
-    1e-7;  ///< ... and which rounding may leave; beyond: gave_up
+inline constexpr double kDistanceAccept = 1e-7;  ///< and which rounding may leave; else gave_up
 
 /// The distance of hulls a and b (Gilbert, Johnson, Keerthi 1988; the simplex is solved as
 /// simplex.hpp says), warm from `cache`, which is updated.
@@ -59,14 +59,14 @@ inline constexpr double kDistanceAccept =
 /// 1e-7 of the hulls' coordinates, usually to 1e-15; slivers, flat and one-point hulls included.
 /// The search ends where upper less lower bound is within kDistanceGap (sum of scales + distance),
 /// where the upper bound stops shrinking, or at the cap. Where the origin meets a simplex that does
-/// not enclose it, two more searches with a shifted by kTouching either way tell touching from
-/// penetrating.
+/// not enclose it, searches with a shifted by kTouching either way, then by 30 times that, tell
+/// touching from penetrating.
 ///
 /// @param a, b        scales from 1e-30 to 1e30
 /// @param b_in_a      maps scaled coordinates of b to scaled coordinates of a; finite
 /// @param stop_above  >= 0; may return State::separated early once lower_bound > stop_above (the
 ///                    witnesses are then only good for a warm start); infinity: exact
-/// Never NaN for finite input. Cost: at most 3 * kMaxDistanceIterations support pairs; one where
+/// Never NaN for finite input. Cost: at most 5 * kMaxDistanceIterations support pairs; one where
 /// warm. No memory. Real-time safe.
 [[nodiscard]] Distance distance(const Hull& a, const Hull& b, const RelativePose& b_in_a,
                                 double stop_above, Cache& cache) noexcept;

@@ -41,7 +41,7 @@ Nearest enclosed() noexcept {
   return n;
 }
 
-Nearest nearest_on_tetrahedron(const Vec3d* p) noexcept {
+Nearest nearest_on_tetrahedron(const Vec3d* p, Carry carry) noexcept {
   constexpr double kMinVolume2 = 1e-28;  // rounding of the determinant is 1e-15 of the edge product
   const Vec3d u = p[0] - p[3];
   const Vec3d v = p[1] - p[3];
@@ -49,15 +49,23 @@ Nearest nearest_on_tetrahedron(const Vec3d* p) noexcept {
   const double volume = dot(u, cross(v, w));  // > 0: face 0 1 2 is counter-clockwise from outside
   const double size2 = squared_norm(u) * squared_norm(v) * squared_norm(w);
   const bool flat = !(volume * volume > kMinVolume2 * size2);
-  constexpr std::uint32_t kFaces[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+  // The last point comes last in each face that has it.
+  constexpr std::uint32_t kFaces[4][3] = {{0, 1, 2}, {0, 2, 3}, {1, 0, 3}, {2, 1, 3}};
   Nearest best;
+  bool inside = !flat;
   for (const auto& f : kFaces) {
     const Side side = side_of_origin(p, f[0], f[1], f[2]);
-    const double outward = volume > 0 ? side.height : -side.height;
-    if (!flat && outward > side.error) continue;  // the origin is certainly on the inner side
-    keep_nearer(best, nearest_on_triangle(p, f[0], f[1], f[2]));
+    const double inward = volume > 0 ? side.height : -side.height;
+    if (!flat && inward > side.error) continue;
+    inside = false;
+    if (carry == Carry::last && f[2] != 3) continue;
+    keep_nearer(best, nearest_on_triangle(p, f[0], f[1], f[2], carry));
   }
-  return best.count == 0 ? enclosed() : best;
+  if (inside) return enclosed();
+  for (std::uint32_t f = 1; f < 4 && best.count == 0; ++f) {
+    best = nearest_on_triangle(p, kFaces[f][0], kFaces[f][1], kFaces[f][2], carry);
+  }
+  return best;
 }
 
 }  // namespace
@@ -101,8 +109,8 @@ Nearest nearest_on_segment(const Vec3d* points, std::uint32_t i, std::uint32_t j
   return n;
 }
 
-Nearest nearest_on_triangle(const Vec3d* points, std::uint32_t i, std::uint32_t j,
-                            std::uint32_t k) noexcept {
+Nearest nearest_on_triangle(const Vec3d* points, std::uint32_t i, std::uint32_t j, std::uint32_t k,
+                            Carry carry) noexcept {
   const Vec3d p0 = points[i];
   const Vec3d p1 = points[j];
   const Vec3d p2 = points[k];
@@ -130,14 +138,15 @@ Nearest nearest_on_triangle(const Vec3d* points, std::uint32_t i, std::uint32_t 
     return n;
   }
   // Only edges that the projection lies beyond can be nearest.
+  const bool last = carry == Carry::last;
   Nearest best;
-  if (flat || !(w2 > 0)) keep_nearer(best, nearest_on_segment(points, i, j));
-  if (flat || !(w1 > 0)) keep_nearer(best, nearest_on_segment(points, i, k));
-  if (flat || !(w0 > 0)) keep_nearer(best, nearest_on_segment(points, j, k));
+  if (flat || last || !(w1 > 0)) keep_nearer(best, nearest_on_segment(points, i, k));
+  if (flat || last || !(w0 > 0)) keep_nearer(best, nearest_on_segment(points, j, k));
+  if (!last && (flat || !(w2 > 0))) keep_nearer(best, nearest_on_segment(points, i, j));
   return best;
 }
 
-Nearest nearest_on_simplex(const Vec3d* points, std::uint32_t count) noexcept {
+Nearest nearest_on_simplex(const Vec3d* points, std::uint32_t count, Carry carry) noexcept {
   PALPATE_ASSERT(count >= 1 && count <= 4);
   switch (count) {
     case 1:
@@ -145,9 +154,9 @@ Nearest nearest_on_simplex(const Vec3d* points, std::uint32_t count) noexcept {
     case 2:
       return nearest_on_segment(points, 0, 1);
     case 3:
-      return nearest_on_triangle(points, 0, 1, 2);
+      return nearest_on_triangle(points, 0, 1, 2, carry);
     default:
-      return nearest_on_tetrahedron(points);
+      return nearest_on_tetrahedron(points, carry);
   }
 }
 

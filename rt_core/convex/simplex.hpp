@@ -28,6 +28,13 @@ struct Nearest {
 [[nodiscard]] Nearest nearest_on_segment(const Vec3d* points, std::uint32_t i,
                                          std::uint32_t j) noexcept;
 
+/// Which features of a simplex may carry the nearest point.
+enum class Carry : std::uint8_t {
+  any,
+  last,  ///< those with the last point. In GJK no other can once a support point is added; where
+         ///< rounding says otherwise, insisting keeps the search from going in circles
+};
+
 /// Of a triangle; it may be degenerate.
 ///
 /// The distance to a face is measured along its normal, taken from the two shorter edges, so that
@@ -35,12 +42,13 @@ struct Nearest {
 /// edges is below kMinSine answers with its edges: they are then nearer to the truth than its
 /// normal.
 [[nodiscard]] Nearest nearest_on_triangle(const Vec3d* points, std::uint32_t i, std::uint32_t j,
-                                          std::uint32_t k) noexcept;
+                                          std::uint32_t k, Carry carry = Carry::any) noexcept;
 
 /// Of 1 to 4 points in any position (after Montanari, Petrinic and Barbieri 2017: signs of volumes
 /// decide which features can be nearest; here every feature that rounding leaves in doubt is tried
 /// and the nearest taken). The origin counts as enclosed only where all signs are certain.
-[[nodiscard]] Nearest nearest_on_simplex(const Vec3d* points, std::uint32_t count) noexcept;
+[[nodiscard]] Nearest nearest_on_simplex(const Vec3d* points, std::uint32_t count,
+                                         Carry carry) noexcept;
 
 /// Balance of two errors: a normal is off by 1e-16 / sine, an edge in its place by sine.
 inline constexpr double kMinSine = 1e-8;

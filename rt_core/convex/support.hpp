@@ -33,7 +33,7 @@ inline constexpr std::uint32_t kMaxClimbSteps = 512;
 /// Position of a vertex in hull coordinates, unscaled.
 inline Vec3d position(const Hull& hull, std::uint32_t vertex) noexcept {
   const float* p = hull.vertices[vertex].position;
-  return {double{p[0]}, double{p[1]}, double{p[2]}};
+  return vec_cast<double>(Vec3f{p[0], p[1], p[2]});
 }
 
 }  // namespace palpate::convex

@@ -46,11 +46,9 @@ void expect_sound(const Hull& a, const Hull& b, const RelativePose& pose, const 
   if (p.exact) {
     ASSERT_LE(p.depth - p.lower_bound, 1e-7 * unit);
     // The witnesses lie on the supporting planes: nothing of a is deeper than point_a.
-    const Hull only_a = a;
     long double deepest = std::numeric_limits<long double>::infinity();
-    for (std::uint32_t i = 0; i < only_a.count; ++i) {
-      const Real r = real_a(only_a, i);
-      deepest = std::min(deepest, p.normal.x * r.x + p.normal.y * r.y + p.normal.z * r.z);
+    for (std::uint32_t i = 0; i < a.count; ++i) {
+      deepest = std::min(deepest, dot(vec_cast<long double>(p.normal), real_a(a, i)));
     }
     ASSERT_NEAR(dot(p.normal, p.point_a), static_cast<double>(deepest), 2e-7 * unit);
   }
@@ -59,9 +57,7 @@ void expect_sound(const Hull& a, const Hull& b, const RelativePose& pose, const 
 std::vector<Vec3d> points_of_a(const Hull& h) {
   std::vector<Vec3d> points;
   for (std::uint32_t i = 0; i < h.count; ++i) {
-    const Real r = real_a(h, i);
-    points.push_back(
-        {static_cast<double>(r.x), static_cast<double>(r.y), static_cast<double>(r.z)});
+    points.push_back(vec_cast<double>(real_a(h, i)));
   }
   return points;
 }

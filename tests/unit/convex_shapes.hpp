@@ -50,9 +50,7 @@ Shape cap(std::uint32_t count, double radius, Random& random);
 Shape any_shape(std::uint32_t max_vertices, Random& random);
 
 /// Points of a hull in the coordinates of a, as real as long double makes them.
-struct Real {
-  long double x, y, z;
-};
+using Real = Vec3<long double>;
 Real real_a(const Hull& a, std::uint32_t i);
 Real real_b(const Hull& b, const RelativePose& b_in_a, std::uint32_t i);
 /// Width of the gap between a and b along a direction (normalised here); negative: overlap.
