@@ -27,7 +27,8 @@ std::size_t longest_axis(const FaceBox& box) {
 
 }  // namespace
 
-FaceTree::FaceTree(const NormalMesh& mesh) : faces_(mesh.faces.size()) {
+FaceTree::FaceTree(const NormalMesh& mesh)
+    : faces_(mesh.faces.size()), leaf_of_face_(mesh.faces.size()), hidden_(mesh.faces.size(), 0) {
   if (faces_.empty()) return;
   std::iota(faces_.begin(), faces_.end(), 0u);
   const auto along = [&](std::uint32_t f, std::size_t axis) {
@@ -43,8 +44,12 @@ FaceTree::FaceTree(const NormalMesh& mesh) : faces_(mesh.faces.size()) {
     const Work w = work.back();
     work.pop_back();
     const FaceBox box = box_of(mesh, faces_.data() + w.first, w.count);
+    nodes_[w.node].box = box;
+    nodes_[w.node].faces = w.count;
     if (w.count <= kLeafFaces) {
-      nodes_[w.node] = {box, w.first, w.count};
+      nodes_[w.node].first = w.first;
+      nodes_[w.node].leaf = true;
+      for (std::uint32_t i = w.first; i < w.first + w.count; ++i) leaf_of_face_[faces_[i]] = w.node;
       continue;
     }
     const std::size_t axis = longest_axis(box);
@@ -57,9 +62,18 @@ FaceTree::FaceTree(const NormalMesh& mesh) : faces_(mesh.faces.size()) {
     });
     const auto children = static_cast<std::uint32_t>(nodes_.size());
     nodes_.resize(nodes_.size() + 2);
-    nodes_[w.node] = {box, children, 0};
+    nodes_[w.node].first = children;
+    nodes_[children].parent = nodes_[children + 1].parent = w.node;
     work.push_back({children, w.first, half});
     work.push_back({children + 1, w.first + half, w.count - half});
+  }
+}
+
+void FaceTree::count_hidden(std::uint32_t face, std::uint32_t by) {
+  hidden_[face] = by == 1 ? 1 : 0;
+  for (std::uint32_t node = leaf_of_face_[face];; node = nodes_[node].parent) {
+    nodes_[node].hidden += by;
+    if (node == 0) return;
   }
 }
 

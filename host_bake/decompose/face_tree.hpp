@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Boxes about the faces of a mesh, in a binary tree.
+// Boxes about the faces of a mesh, in a binary tree; faces can be hidden from the search.
 #pragma once
 
 #include <array>
@@ -32,8 +32,13 @@ class FaceTree {
   /// O(n log^2 n).
   explicit FaceTree(const NormalMesh& mesh);
 
-  /// Visits the faces in leaves whose boxes, and all boxes above, `enter` lets pass: enter(const
-  /// FaceBox&) -> bool, visit(face) -> bool, true ends the search. Returns whether a visit did.
+  /// A hidden face is not visited, nor a subtree in which all are hidden. O(log n).
+  void hide(std::uint32_t face) { count_hidden(face, 1); }
+  void show(std::uint32_t face) { count_hidden(face, ~0u); }
+
+  /// Visits the faces not hidden in leaves whose boxes, and all boxes above, `enter` lets pass:
+  /// enter(const FaceBox&) -> bool, visit(face) -> bool, true ends the search. Returns whether a
+  /// visit did.
   template <class Enter, class Visit>
   bool search(Enter enter, Visit visit) const {
     std::array<std::uint32_t, kMaxDepth> stack;
@@ -41,10 +46,12 @@ class FaceTree {
     if (!nodes_.empty()) stack[open++] = 0;
     while (open > 0) {
       const Node& node = nodes_[stack[--open]];
-      if (!enter(node.box)) continue;
-      for (std::uint32_t i = 0; i < node.faces; ++i)
-        if (visit(faces_[node.first + i])) return true;
-      if (node.faces > 0) continue;
+      if (node.hidden == node.faces || !enter(node.box)) continue;
+      if (node.leaf) {
+        for (std::uint32_t i = node.first; i < node.first + node.faces; ++i)
+          if (!hidden_[faces_[i]] && visit(faces_[i])) return true;
+        continue;
+      }
       stack[open++] = node.first + 1;
       stack[open++] = node.first;
     }
@@ -57,10 +64,17 @@ class FaceTree {
   struct Node {
     FaceBox box;
     std::uint32_t first = 0;  // leaf: into faces_; else the first of two children
-    std::uint32_t faces = 0;  // 0: not a leaf
+    std::uint32_t faces = 0;  // below it
+    std::uint32_t hidden = 0;
+    std::uint32_t parent = 0;  // the root's is itself
+    bool leaf = false;
   };
+  void count_hidden(std::uint32_t face, std::uint32_t by);
+
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> faces_;
+  std::vector<std::uint32_t> leaf_of_face_;
+  std::vector<char> hidden_;
 };
 
 }  // namespace palpate::bake

@@ -11,8 +11,6 @@ namespace palpate::bake {
 namespace {
 
 constexpr std::size_t kIntruders = 8;
-// Keeps the hull's log of what can be taken back small beside the hull itself.
-constexpr std::size_t kLargestBatch = 1024;
 
 }  // namespace
 
@@ -34,6 +32,7 @@ void PatchGrower::take(std::uint32_t plate) {
   for (const std::uint32_t f : plates_.faces_of(plate)) {
     patch_of_face_[f] = id_;
     faces_.push_back(f);
+    tree_.hide(f);
   }
   // While the patch is flat, what makes it solid comes first: nothing in its plane can join it
   // before.
@@ -113,7 +112,10 @@ void PatchGrower::take_back(const Checkpoint& checkpoint, std::size_t head) {
   hull_.rollback(0);
   for (std::size_t i = checkpoint.members; i < members_.size(); ++i)
     patch_of_plate_[members_[i]] = kFree;
-  for (std::size_t i = checkpoint.faces; i < faces_.size(); ++i) patch_of_face_[faces_[i]] = kFree;
+  for (std::size_t i = checkpoint.faces; i < faces_.size(); ++i) {
+    patch_of_face_[faces_[i]] = kFree;
+    tree_.show(faces_[i]);
+  }
   for (std::size_t i = checkpoint.queue; i < queue_.size(); ++i) seen_by_[queue_[i]] = kFree;
   members_.resize(checkpoint.members);
   faces_.resize(checkpoint.faces);
@@ -124,6 +126,7 @@ void PatchGrower::take_back(const Checkpoint& checkpoint, std::size_t head) {
 void PatchGrower::grow(std::uint32_t seed, std::uint32_t id) {
   assert(is_free(seed));
   id_ = id;
+  for (const std::uint32_t f : faces_) tree_.show(f);
   members_.clear();
   faces_.clear();
   queue_.clear();
@@ -150,7 +153,7 @@ void PatchGrower::grow(std::uint32_t seed, std::uint32_t id) {
     if (!hull_.grown() || is_clear()) {
       hull_.commit();
       valid = checkpoint();
-      batch = std::min({2 * added, members_.size() / 4 + 1, kLargestBatch});
+      batch = std::min(2 * added, members_.size() / 4 + 1);
     } else if (added > 1) {
       // What was refused since then was so by a patch that is no more: all are tried again.
       take_back(valid, valid.head);

@@ -61,7 +61,7 @@ class PatchGrower {
   const SurfaceEdges& edges_;
   const Plates& plates_;
   const std::vector<std::uint32_t>& most_faces_;
-  const FaceTree tree_;
+  FaceTree tree_;  // the patch's faces are hidden
   GrowingHull hull_;
   ShrunkHull shrunk_;
 

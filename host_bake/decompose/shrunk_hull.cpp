@@ -47,6 +47,8 @@ void ShrunkHull::find_planes(const GrowingHull& hull) {
   }
   for (auto& around : neighbours_)
     for (std::uint32_t& n : around) n = plane_of_slot_[n];
+  visited_.assign(planes_.size(), 0);
+  visit_ = 0;
 }
 
 void ShrunkHull::find_centre(const GrowingHull& hull) {
@@ -151,10 +153,20 @@ bool ShrunkHull::entered_by(Vec3d a, Vec3d b, Vec3d c) {
   };
   if (find_separating((1.0 / 3) * (a + b + c), separates)) return false;
   polygon_ = {a, b, c};
-  for (std::uint32_t p = 0; p < planes_.size(); ++p) {
+  // Outward in rings from the last plane: those that cut most come first, and mostly leave nothing.
+  ++visit_;
+  order_.assign(1, last_);
+  visited_[last_] = visit_;
+  for (std::size_t next = 0; next < order_.size(); ++next) {
+    const std::uint32_t p = order_[next];
     const bool cuts =
         std::any_of(polygon_.begin(), polygon_.end(), [&](Vec3d v) { return height(p, v) > 0; });
     if (cuts && !clip_away(p)) return false;
+    for (const std::uint32_t n : neighbours_[p]) {
+      if (visited_[n] == visit_) continue;
+      visited_[n] = visit_;
+      order_.push_back(n);
+    }
   }
   return true;
 }

@@ -56,6 +56,8 @@ class ShrunkHull {
   bool thin_ = true;
   std::uint32_t last_ = 0;  // the plane that separated last: neighbours in space share it
   std::vector<Vec3d> polygon_, clipped_;
+  std::vector<std::uint32_t> order_, visited_;
+  std::uint32_t visit_ = 0;
 };
 
 }  // namespace palpate::bake
