@@ -134,6 +134,9 @@ inline Part ball_part(float radius, unsigned rings, unsigned segments) {
 
 namespace tiny {
 
+inline constexpr float kResolution = 1.0f;
+inline constexpr float kSupportArea = 0.25f;
+
 /// A node of the merge tree, before the pieces are put in order.
 struct Node {
   Part hull;
@@ -238,13 +241,14 @@ inline void put_faces(ImageParts& out, image::Piece& piece, const Part& hull) {
 inline image::Piece put_piece(ImageParts& out, const Node& node) {
   image::Piece piece{};
   piece.level = node.level;
+  piece.resolution = node.level == 0 ? kResolution : 0.0f;
   piece.first_child = piece.parent = image::kNone;
   piece.first_neighbour_start = piece.first_neighbour = image::kNone;
   piece.first_triangle = piece.first_virtual_face = image::kNone;
   piece.children = static_cast<std::uint32_t>(node.children.size());
   piece.first_vertex = static_cast<std::uint32_t>(out.vertices.size());
   piece.vertices = piece.hull_vertices = static_cast<std::uint32_t>(node.hull.points.size());
-  piece.min_support_area = 0.25f;
+  piece.min_support_area = kSupportArea;
   put_sphere(piece, node.hull.points);
   for (const PointF& p : node.hull.points) {
     out.vertices.push_back({{p[0], p[1], p[2]}, piece.min_support_area});
@@ -259,7 +263,8 @@ inline void put_levels(ImageParts& out) {
   for (std::uint32_t i = 0; i < out.levels.size(); ++i) {
     image::Level& level = out.levels[i];
     level.free = i > 0 ? 1 : 0;
-    level.min_support_area_rel = 0.25f;
+    level.min_support_area_rel = kSupportArea;
+    level.resolution = i == 0 ? kResolution : 0.0f;
     for (const image::Piece& p : out.pieces) {
       const bool ended = p.parent != image::kNone && out.pieces[p.parent].level <= i;
       level.pieces += p.level <= i && !ended ? 1 : 0;

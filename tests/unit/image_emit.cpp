@@ -6,15 +6,13 @@
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <random>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "../support/temporary_folder.hpp"
 #include "../support/tiny_image.hpp"
 #include "host_bake/emit/emit.hpp"
 
@@ -175,34 +173,23 @@ TEST(ElfObject, Sections_and_symbols_are_those_promised_for_each_machine) {
   expect_object<Reader32>(Machine::arm, ELFCLASS32, EM_ARM);
 }
 
-/// A scratch folder of this test, and the tools that a firmware build would use.
+std::string_view as_text(std::span<const std::byte> bytes) {
+  return {static_cast<const char*>(static_cast<const void*>(bytes.data())), bytes.size()};
+}
+
+/// A folder, and the tools in it that a firmware build would use.
 class EmitLink : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        std::filesystem::path(testing::TempDir()) / (std::string("palpate_emit_") + info->name());
-    std::filesystem::create_directories(folder_);
-    write("image.bin", std::string(as_text(image_)));
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  static std::string_view as_text(std::span<const std::byte> bytes) {
-    return {static_cast<const char*>(static_cast<const void*>(bytes.data())), bytes.size()};
-  }
-  void write(const std::string& name, std::string_view text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
+  void write(const std::string& name, std::string_view text) const { folder_.write(name, text); }
   [[nodiscard]] std::string read(const std::string& name) const {
-    std::ifstream in(folder_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
+    return test::read_file(folder_.path() / name);
   }
   [[nodiscard]] int run(const std::string& command) const {
-    return std::system(("cd '" + folder_.string() + "' && " + command).c_str());
+    return std::system(("cd '" + folder_.path().string() + "' && " + command).c_str());
   }
 
   AlignedBytes image_ = some_image();
-  std::filesystem::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 constexpr const char* kCArrayProgram = R"(

@@ -4,13 +4,11 @@
 
 #include <cstddef>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "../support/temporary_folder.hpp"
 #include "../support/tiny_image.hpp"
 #include "rt_core/image/format.hpp"
 
@@ -28,12 +26,7 @@ void PrintTo(const Field& field, std::ostream* out) {
   *out << field.name << " at " << field.offset << ", " << field.bytes << " bytes";
 }
 
-std::string read_text(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-std::string page() { return read_text(PALPATE_DOCS "/FORMAT.md"); }
+std::string page() { return read_file(PALPATE_DOCS "/FORMAT.md"); }
 
 /// The page from a heading to the next one.
 std::string chapter(const std::string& heading) {
@@ -242,10 +235,8 @@ TEST(FormatPage, Reader_on_the_page_reads_an_image) {
   if (std::system("python3 --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no python3";
   const std::string text = page();
   const std::size_t start = text.find("```python\n") + 10;
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / "palpate_format_page";
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "reader.py") << text.substr(start, text.find("```", start) - start);
+  const TemporaryFolder folder;
+  folder.write("reader.py", text.substr(start, text.find("```", start) - start));
 
   // Coordinates that C++ and Python print alike.
   ImageParts parts =
@@ -254,13 +245,12 @@ TEST(FormatPage, Reader_on_the_page_reads_an_image) {
                0.5);
   parts.header.centre_m[1] = 8.5;
   const AlignedBytes bytes = seal(parts);
-  std::ofstream(folder / "image.palp", std::ios::binary)
-      .write(static_cast<const char*>(static_cast<const void*>(bytes.data())),
-             static_cast<std::streamsize>(bytes.size()));
+  folder.write("image.palp",
+               {static_cast<const char*>(static_cast<const void*>(bytes.data())), bytes.size()});
   const std::string command =
-      "cd '" + folder.string() + "' && python3 reader.py image.palp 0 > level.obj";
+      "cd '" + folder.path().string() + "' && python3 reader.py image.palp 0 > level.obj";
   ASSERT_EQ(std::system(command.c_str()), 0);
-  std::string obj = read_text(folder / "level.obj");
+  std::string obj = read_file(folder.path() / "level.obj");
   for (std::size_t at = 0; (at = obj.find(".0", at)) != std::string::npos;) {
     const bool ends = at + 2 == obj.size() || obj[at + 2] == ' ' || obj[at + 2] == '\n';
     if (ends)
@@ -269,7 +259,6 @@ TEST(FormatPage, Reader_on_the_page_reads_an_image) {
       ++at;
   }
   EXPECT_EQ(obj, expected_obj(parts));
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
