@@ -26,25 +26,25 @@ inline constexpr std::size_t kAlignment = 64;
 inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< "no such index"
 
 // What the engine can walk. The baker stays below; validate() refuses what is above.
-inline constexpr std::uint32_t kMaxLevels =
-    64;  ///< also the greatest depth: a child's level is below its parent's
+
+/// Also the greatest depth: a child's level is below its parent's.
+inline constexpr std::uint32_t kMaxLevels = 64;
 inline constexpr std::uint32_t kMaxPieces = 1u << 24;
 inline constexpr std::uint32_t kMaxChildren = 256;  ///< children of one piece
 inline constexpr std::uint32_t kMaxHullVertices = 1u << 22;
-inline constexpr std::uint32_t kMaxOpenPatchTriangles =
-    16;  ///< triangles of a patch whose back side can be reached
-inline constexpr std::uint32_t kAdjacencyAbove =
-    32;  ///< hulls with more vertices than this carry neighbour lists
+/// Triangles of a patch whose back side can be reached.
+inline constexpr std::uint32_t kMaxOpenPatchTriangles = 16;
+/// Hulls with more vertices than this carry neighbour lists.
+inline constexpr std::uint32_t kAdjacencyAbove = 32;
 
-// Ranges of numbers.
+// Ranges of numbers; lengths and areas for radius 1.
 inline constexpr double kMinRadius_m = 1e-12;
 inline constexpr double kMaxRadius_m = 1e12;
-inline constexpr double kMaxCentre_m = 1e15;  ///< of each |coordinate|
-inline constexpr float kMaxNorm =
-    1.0f + 1e-5f;                          ///< of a vertex and of a sphere's centre, for radius 1
-inline constexpr float kMaxLength = 4.0f;  ///< of a sphere's radius, s, h and delta, for radius 1
-inline constexpr float kMinArea =
-    1.17549435e-38f;  ///< of a support area: the least normal float, so that 1 / D is finite
+inline constexpr double kMaxCentre_m = 1e15;     ///< of each |coordinate|
+inline constexpr float kMaxNorm = 1.0f + 1e-5f;  ///< of a vertex and of a sphere's centre
+inline constexpr float kMaxLength = 4.0f;        ///< of a sphere's radius, s, h and delta
+/// Of a support area: the least normal float, so that 1 / D is finite.
+inline constexpr float kMinArea = 1.17549435e-38f;
 inline constexpr float kMaxArea = 1e9f;
 
 /// A run of equal records. An empty section's slot is all zero.
@@ -56,14 +56,15 @@ struct Section {
 
 enum class SectionId : std::uint32_t {
   levels = 0,  ///< Level, finest first
-  pieces =
-      1,  ///< Piece; the root is piece 0, children follow their parent, siblings are contiguous
-  vertices = 2,          ///< Vertex; each piece's own run
-  neighbour_starts = 3,  ///< u32; hull_vertices + 1 a piece with adjacency, offsets into neighbours
-                         ///< from the piece's own first one
-  neighbours = 4,  ///< u32; vertex indices local to the piece, strictly ascending within a list, no
-                   ///< list empty
-  triangles = 5,   ///< Triangle; the patch of each piece of a level that is not free
+  /// Piece; the root is piece 0, children follow their parent, siblings are contiguous
+  pieces = 1,
+  vertices = 2,  ///< Vertex; each piece's own run
+  /// u32; hull_vertices + 1 a piece with adjacency, offsets into neighbours from the piece's own
+  /// first one
+  neighbour_starts = 3,
+  /// u32; vertex indices local to the piece, strictly ascending within a list, no list empty
+  neighbours = 4,
+  triangles = 5,      ///< Triangle; the patch of each piece of a level that is not free
   virtual_faces = 6,  ///< VirtualFace; hull faces that are not of the mesh
   // 7 to 15 are for the region engine and later minor versions; they are empty in version 1.0.
 };
@@ -137,11 +138,11 @@ struct Level {
 static_assert(sizeof(Level) == 32);
 
 enum class PieceFlag : std::uint32_t {
-  all_real = 1u << 0,  ///< every hull face is of the mesh: a single triangle, a flat convex patch,
-                       ///< a closed convex body. Set where a piece with a patch has no virtual
-                       ///< faces; clear on free levels
-  back_open =
-      1u << 1,  ///< its virtual faces can be reached from outside (open or self-crossing component)
+  /// Every hull face is of the mesh: a single triangle, a flat convex patch, a closed convex body.
+  /// Set where a piece with a patch has no virtual faces; clear on free levels.
+  all_real = 1u << 0,
+  /// Its virtual faces can be reached from outside (open or self-crossing component).
+  back_open = 1u << 1,
 };
 
 /// A convex piece (Sec. 4.3): the hull of a patch, or of its children's hulls on free levels. Two
@@ -153,23 +154,23 @@ struct Piece {
   std::uint32_t hull_vertices;  ///< the first ones of its run: extreme points
   std::uint32_t first_child;    ///< into pieces; kNone on level 0
   std::uint32_t children;       ///< 0 on level 0, at least 1 above
-  std::uint32_t first_neighbour_start;  ///< into neighbour_starts; kNone where hull_vertices <=
-                                        ///< kAdjacencyAbove
-  std::uint32_t first_neighbour;        ///< into neighbours; kNone likewise
-  std::uint32_t flags;                  ///< PieceFlag
-  std::uint32_t level;      ///< level at which the piece was made; the last level at the root
-  float surface_deviation;  ///< s, Sec. 4.5: no point of the patch is farther from the original
-                            ///< surface
-  float hausdorff;          ///< h, Sec. 4.5: no point of a descendant is farther outside this hull
-  float resolution;         ///< r of its level; 0 on free levels
-  float min_support_area;   ///< smallest D of its vertices
+  /// into neighbour_starts; kNone where hull_vertices <= kAdjacencyAbove
+  std::uint32_t first_neighbour_start;
+  std::uint32_t first_neighbour;  ///< into neighbours; kNone likewise
+  std::uint32_t flags;            ///< PieceFlag
+  std::uint32_t level;            ///< level at which the piece was made; the last level at the root
+  /// s, Sec. 4.5: no point of the patch is farther from the original surface
+  float surface_deviation;
+  float hausdorff;         ///< h, Sec. 4.5: no point of a descendant is farther outside this hull
+  float resolution;        ///< r of its level; 0 on free levels
+  float min_support_area;  ///< smallest D of its vertices
   // second line
   std::uint32_t parent;          ///< kNone at the root
   std::uint32_t vertices;        ///< of its run: hull vertices, then the patch's other vertices
   std::uint32_t first_triangle;  ///< into triangles; kNone on free levels
   std::uint32_t triangles;       ///< of its patch; 0 on free levels, at least 1 on others
-  std::uint32_t
-      first_virtual_face;  ///< into virtual_faces; kNone where there are none and on free levels
+  /// into virtual_faces; kNone where there are none and on free levels
+  std::uint32_t first_virtual_face;
   std::uint32_t virtual_faces;
   std::uint32_t reserved[10];
 };
