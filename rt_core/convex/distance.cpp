@@ -71,6 +71,10 @@ void store(const Simplex& s, Cache& cache) noexcept {
 
 /// Drops the points that do not carry the nearest one.
 void reduce(Search& search, const Nearest& nearest) noexcept {
+  if (nearest.count == search.simplex.count) {  // all of them, in order: the usual case when warm
+    for (std::uint32_t i = 0; i < nearest.count; ++i) search.weights[i] = nearest.weight[i];
+    return;
+  }
   const Simplex all = search.simplex;
   search.simplex.count = 0;
   for (std::uint32_t i = 0; i < nearest.count; ++i) {
@@ -108,7 +112,7 @@ void run(const HullPair& pair, double on_simplex, double stop_above, Search& sea
       return;
     }
     const Vec3d normal = (1 / norm(nearest.axis)) * nearest.axis;
-    const DifferencePoint w = support(pair, -normal, first_point(search.simplex));
+    const DifferencePoint w = support(pair, -nearest.axis, first_point(search.simplex));
     ++search.iterations;
     const double lower = dot(normal, w.point) - slack;
     if (lower > search.lower) {
@@ -139,18 +143,19 @@ void add_weight(std::uint32_t vertex, double weight, std::uint32_t (&vertices)[3
 }
 
 void set_witnesses(const HullPair& pair, const Search& search, Distance& out) noexcept {
+  Vec3d apart{};
   for (std::uint32_t i = 0; i < search.simplex.count; ++i) {
-    if (!(search.weights[i] > 0)) continue;
-    add_weight(search.simplex.a[i], search.weights[i], out.vertices_a, out.weights_a, out.count_a);
-    add_weight(search.simplex.b[i], search.weights[i], out.vertices_b, out.weights_b, out.count_b);
+    const double weight = search.weights[i];
+    if (!(weight > 0)) continue;
+    add_weight(search.simplex.a[i], weight, out.vertices_a, out.weights_a, out.count_a);
+    add_weight(search.simplex.b[i], weight, out.vertices_b, out.weights_b, out.count_b);
+    apart += weight * search.simplex.points[i];
   }
   for (std::uint32_t i = 0; i < out.count_a; ++i) {
     out.point_a += out.weights_a[i] * vertex_of_a(pair, out.vertices_a[i]);
   }
-  for (std::uint32_t i = 0; i < out.count_b; ++i) {
-    out.point_b += out.weights_b[i] * vertex_of_b(pair, out.vertices_b[i]);
-  }
-  out.distance = norm(out.point_a - out.point_b);
+  out.point_b = out.point_a - apart;
+  out.distance = norm(apart);
 }
 
 /// One search with a shifted by `by`. True where the origin is enclosed then; its simplex goes to
