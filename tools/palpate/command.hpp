@@ -47,7 +47,8 @@ void write_file(const std::filesystem::path& target, std::string_view text);
 /// last copy of the result is destroyed.
 bake::Progress progress(bool quiet);
 
-/// For options: a finite number, both ends allowed. CLI::Range lets NaN pass.
+/// For options: a finite number, both ends allowed. CLI::Range lets NaN pass, and unsigned options
+/// wrap -1 around.
 CLI::Validator number_between(double min, double max);
 
 void add_make_model(CLI::App& app);

@@ -11,6 +11,7 @@
 #include <iostream>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "config/scene.hpp"
 #include "rt_core/image/format.hpp"
@@ -22,7 +23,9 @@ namespace {
 // In the order in which --help lists them.
 constexpr std::initializer_list<void (*)(CLI::App&)> kCommands = {
     // clang-format off
+    add_make_model,
     add_check,
+    add_bake,
     add_inspect,
     add_emit,
     add_replay,
@@ -52,10 +55,16 @@ int error(const std::string& message, Exit code) {
   return code;
 }
 
-/// `palpate` or `palpate replay`: where a mistake of the command line was made.
-std::string command_name(const CLI::App& app) {
+/// One line for a mistake of the command line. CLI11 looks for a sub-command before it looks at
+/// what it got instead.
+std::string usage_error(const CLI::App& app, const CLI::ParseError& e) {
   const auto chosen = app.get_subcommands();
-  return chosen.empty() ? "palpate" : "palpate " + chosen.front()->get_name();
+  const std::string name = chosen.empty() ? "palpate" : "palpate " + chosen.front()->get_name();
+  const std::vector<std::string> unknown = app.remaining();
+  const bool no_command = chosen.empty() && !unknown.empty();
+  const std::string what =
+      no_command ? "unknown command or option '" + unknown.front() + "'" : e.what();
+  return what + ": " + name + ": see '" + name + " --help'";
 }
 
 /// The reader of a pipe may leave when it has seen enough: no error. A full disk is one.
@@ -82,8 +91,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& e) {
     return app.exit(e);  // --help and --version
   } catch (const CLI::ParseError& e) {
-    const std::string name = command_name(app);
-    return error(std::string(e.what()) + ": " + name + ": see '" + name + " --help'", kUsage);
+    return error(usage_error(app, e), kUsage);
   }
 }
 

@@ -123,6 +123,7 @@ void add_budget(CLI::App& command, Arguments& a) {
       command.add_option("--budget-units", a.options.budget_units,
                          "stop refining a tick after this many convex-pair queries: repeatable");
   time->check(number_between(0, 1e9))->excludes(units);
+  units->check(number_between(0, 1e18));
 }
 
 }  // namespace
@@ -147,7 +148,7 @@ void add_replay(CLI::App& app) {
   command
       ->add_option("--repeat", a->options.repeat,
                    "replay this often, report the last one with the median times")
-      ->check(CLI::Range(1, 1000));
+      ->check(number_between(1, 1000));
   command->add_flag("--json", a->json, "print the summary as one JSON object");
   command->add_flag("--quiet", a->quiet, "print no progress and no summary");
   command->callback([a] {

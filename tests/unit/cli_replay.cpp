@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `palpate replay` as a process: two cubes of a centimetre, the tool coming down on a fixed one
+// along x.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "../support/process.hpp"
+#include "../support/temporary_folder.hpp"
+#include "../support/tiny_image.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double kDelta_m = 0.0005;
+const std::string kTicksHeader =
+    "tick,t,fx,fy,fz,tx,ty,tz,contacts,clusters,min_distance,front,queries,time_ns,truncated,s_"
+    "worst,error_bound";
+const std::string kContactsHeader =
+    "tick,pair,ax,ay,az,bx,by,bz,nx,ny,nz,distance,piece_a,lod_a,piece_b,lod_b,weight";
+
+std::vector<std::vector<std::string>> rows(const std::string& csv) {
+  std::vector<std::vector<std::string>> out;
+  std::istringstream in(csv);
+  for (std::string line; std::getline(in, line);) {
+    out.emplace_back();
+    std::istringstream fields(line + ",");
+    for (std::string field; std::getline(fields, field, ',');) out.back().push_back(field);
+  }
+  return out;
+}
+
+double number(const std::string& text) { return std::strtod(text.c_str(), nullptr); }
+
+class Replay : public ::testing::Test {
+ protected:
+  Replay() {
+    // Two halves a cube: a tree with something to refine.
+    const std::vector<test::Part> halves = {test::box_part({0, 0, -0.25f}, {0.5f, 0.5f, 0.25f}),
+                                            test::box_part({0, 0, 0.25f}, {0.5f, 0.5f, 0.25f})};
+    const auto image = test::seal(test::parts_of(halves, 0.01));
+    std::string bytes(image.size(), '\0');
+    std::memcpy(bytes.data(), image.data(), image.size());
+    folder_.write("cube.palp", bytes);
+    write_scene("");
+    std::string poses = "t,body,px,py,pz,qw,qx,qy,qz\n";
+    for (int i = 0; i < kTicks; ++i) {
+      poses += "0.00" + std::to_string(i) + ",tool," + std::to_string(0.011 - 0.0002 * i) +
+               ",0,0,1,0,0,0\n";
+    }
+    folder_.write("poses.csv", poses);
+  }
+
+  void write_scene(const std::string& engine, const std::string& rest = "") {
+    folder_.write("scene.toml",
+                  "[engine]\ndelta_m = 0.0005\n" + engine +
+                      "\n[force]\nstiffness_N_per_m = 600.0\n[[body]]\nname = \"tool\"\n"
+                      "image = \"cube.palp\"\nrole = \"tool\"\n[[body]]\nname = \"wall\"\nimage = "
+                      "\"cube.palp\"\n" +
+                      rest);
+  }
+
+  [[nodiscard]] std::string at(const std::string& name) const {
+    return (folder_.path() / name).string();
+  }
+
+  test::Outcome replay(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> command = {PALPATE_EXECUTABLE, "replay", at("scene.toml"), "--poses",
+                                        at("poses.csv"),    "-o",     at("ticks.csv")};
+    command.insert(command.end(), more.begin(), more.end());
+    return test::run(command);
+  }
+
+  void expect_refusal(const test::Outcome& outcome, int status, const std::string& what) {
+    EXPECT_EQ(outcome.status, status) << outcome.err;
+    EXPECT_EQ(outcome.err.find("palpate: error: "), 0u) << outcome.err;
+    EXPECT_NE(outcome.err.find(what), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_FALSE(std::filesystem::exists(at("ticks.csv")));
+    EXPECT_EQ(folder_.files(), 3u);  // scene, poses, image: no temporary ones
+  }
+
+  static constexpr int kTicks = 6;
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Replay, Cubes_approaching_give_distance_and_force) {
+  const test::Outcome outcome = replay({"--contacts", at("contacts.csv")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string text = test::read_file(at("ticks.csv"));
+  EXPECT_EQ(text.substr(0, text.find('\n')), kTicksHeader);
+  const auto ticks = rows(text);
+  ASSERT_EQ(ticks.size(), 1u + kTicks);
+  std::size_t contacts = 0;
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    const auto& row = ticks[i];
+    ASSERT_EQ(row.size(), 17u);
+    EXPECT_EQ(row[0], std::to_string(i - 1));
+    const double gap_m = 0.001 - 0.0002 * double(i - 1);
+    if (gap_m > kDelta_m) {
+      EXPECT_EQ(row[10], "");
+      EXPECT_EQ(row[8], "0");
+      EXPECT_EQ(number(row[2]), 0.0);
+    } else {
+      EXPECT_NEAR(number(row[10]), gap_m, 1e-8);
+      EXPECT_GT(number(row[2]), 0.0);
+    }
+    EXPECT_EQ(row[14], "0");
+    contacts += static_cast<std::size_t>(number(row[8]));
+  }
+
+  const std::string contact_text = test::read_file(at("contacts.csv"));
+  EXPECT_EQ(contact_text.substr(0, contact_text.find('\n')), kContactsHeader);
+  const auto table = rows(contact_text);
+  EXPECT_EQ(table.size(), 1 + contacts);
+  for (std::size_t i = 1; i < table.size(); ++i) {
+    ASSERT_EQ(table[i].size(), 17u);
+    EXPECT_NEAR(number(table[i][8]), 1.0, 1e-6);  // from the wall to the tool
+    EXPECT_NEAR(number(table[i][2]) - number(table[i][5]), number(table[i][11]), 1e-8);
+  }
+  EXPECT_EQ(folder_.files(), 5u);
+}
+
+TEST_F(Replay, Text_of_numbers_is_the_shortest_that_reads_back) {
+  ASSERT_EQ(replay().status, 0);
+  for (const auto& row : rows(test::read_file(at("ticks.csv")))) {
+    if (row[0] == "tick") continue;
+    EXPECT_EQ(row[1], std::stoi(row[0]) == 0 ? "0" : row[1]);
+    EXPECT_LE(row[1].size(), 5u) << row[1];
+  }
+}
+
+TEST_F(Replay, Same_input_gives_the_same_rows_but_for_time) {
+  const auto without_time = [&] {
+    auto table = rows(test::read_file(at("ticks.csv")));
+    for (auto& row : table) row[13].clear();
+    return table;
+  };
+  ASSERT_EQ(replay().status, 0);
+  const auto first = without_time();
+  ASSERT_EQ(replay({"--repeat", "3"}).status, 0);
+  EXPECT_EQ(without_time(), first);
+}
+
+TEST_F(Replay, Unit_budget_of_nothing_is_said_to_truncate) {
+  ASSERT_EQ(replay({"--budget-units", "0", "--s0", "0"}).status, 0);
+  EXPECT_EQ(rows(test::read_file(at("ticks.csv"))).back()[14], "1");
+}
+
+TEST_F(Replay, Scene_budget_counts_unless_exact) {
+  write_scene("budget_us = 0.0\ns0 = 0.0");
+  ASSERT_EQ(replay().status, 0);
+  EXPECT_EQ(rows(test::read_file(at("ticks.csv"))).back()[14], "1");
+  ASSERT_EQ(replay({"--exact"}).status, 0);
+  EXPECT_EQ(rows(test::read_file(at("ticks.csv"))).back()[14], "0");
+  ASSERT_EQ(replay({"--exact", "--budget-us", "0"}).status, 0);
+  EXPECT_EQ(rows(test::read_file(at("ticks.csv"))).back()[14], "1");
+  ASSERT_EQ(replay({"--budget-us", "1e9"}).status, 0);
+  EXPECT_EQ(rows(test::read_file(at("ticks.csv"))).back()[14], "0");
+}
+
+TEST_F(Replay, Summary_is_a_line_or_one_json_object_or_nothing) {
+  const std::string line = replay().out;
+  EXPECT_EQ(line.find("6 ticks: "), 0u) << line;
+  EXPECT_EQ(line.find('\n'), line.size() - 1);
+  const auto json = nlohmann::json::parse(replay({"--json", "--quiet"}).out);
+  EXPECT_EQ(json["ticks"], 6);
+  EXPECT_GE(json["tick_ns"]["max"], json["tick_ns"]["p50"]);
+  EXPECT_GT(json["engine_bytes"], 0);
+  EXPECT_EQ(replay({"--quiet"}).out, "");
+}
+
+TEST_F(Replay, Refused_input_exits_3_and_writes_nothing) {
+  folder_.write("poses.csv", "t,body,px,py,pz,qw,qx,qy,qz\n0,tool,nan,0,0,1,0,0,0\n");
+  expect_refusal(replay({"--contacts", at("contacts.csv")}), 3, "poses.csv:2: ");
+  folder_.write("poses.csv", "t,body,px,py,pz,qw,qx,qy,qz\n0,wall,0,0,0,1,0,0,0\n");
+  expect_refusal(replay(), 3, "'wall' is fixed");
+}
+
+TEST_F(Replay, Damaged_image_exits_3) {
+  const std::string whole = test::read_file(at("cube.palp"));
+  folder_.write("cube.palp", whole.substr(0, whole.size() - 1));
+  expect_refusal(replay(), 3, "cube.palp");
+  folder_.write("cube.palp", "");
+  expect_refusal(replay(), 3, "cube.palp");
+}
+
+TEST_F(Replay, Scene_that_needs_more_memory_than_it_allows_exits_3) {
+  write_scene("", "[limits]\nmax_memory_MB = 0.001\n");  // less than the image
+  expect_refusal(replay(), 3, "memory, more than it allows");
+  write_scene("", "[limits]\nmax_memory_MB = 0.02\n");  // less than image and engine
+  expect_refusal(replay(), 3, "memory, more than it allows");
+}
+
+TEST_F(Replay, Wrong_scene_exits_2) {
+  write_scene("delta = 1.0");
+  expect_refusal(replay(), 2, "scene.toml:3: did you mean 'delta_m'?");
+  write_scene("engine = \"regions\"");
+  expect_refusal(replay(), 2, "no regions engine");
+}
+
+TEST_F(Replay, Wrong_options_exit_2) {
+  expect_refusal(replay({"--engine", "regions"}), 2, "no regions engine");
+  expect_refusal(replay({"--engine", "other"}), 2, "palpate replay --help");
+  expect_refusal(replay({"--kappa", "1"}), 2, "regions engine");
+  expect_refusal(replay({"--force-tolerance", "1"}), 2, "regions engine");
+  expect_refusal(replay({"--budget-us", "1", "--budget-units", "1"}), 2, "xcludes");
+  expect_refusal(replay({"--s0", "-1"}), 2, "--s0");
+  expect_refusal(replay({"--s0", "nan"}), 2, "--s0");
+  expect_refusal(replay({"--budget-us", "nan"}), 2, "--budget-us");
+  expect_refusal(replay({"--budget-units", "-1"}), 2, "--budget-units");
+  expect_refusal(replay({"--budget-units", "1.5"}), 2, "--budget-units");
+  expect_refusal(replay({"--repeat", "0"}), 2, "--repeat");
+  expect_refusal(replay({"--contacts", at("ticks.csv")}), 2, "cannot be one file");
+  expect_refusal(replay({"--surprise"}), 2, "--surprise");
+}
+
+TEST_F(Replay, Output_that_cannot_be_written_exits_1_and_leaves_none) {
+  expect_refusal(replay({"--contacts", at("absent/contacts.csv")}), 1, "absent/contacts.csv");
+}
+
+}  // namespace
+}  // namespace palpate
