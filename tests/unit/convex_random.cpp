@@ -24,6 +24,7 @@ constexpr int kQueries = PALPATE_CONVEX_QUERIES;
 /// Shapes are dear, poses cheap: a pool of shapes, paired at random.
 std::vector<Shape> shape_pool(std::uint32_t max_vertices, Random& random) {
   std::vector<Shape> pool;
+  pool.reserve(400);
   for (int i = 0; i < 400; ++i) pool.push_back(any_shape(max_vertices, random));
   return pool;
 }

@@ -109,12 +109,14 @@ Quat random_rotation(Random& random) {
 
 Shape cloud(const std::vector<Vec3d>& points) {
   Shape s;
+  s.vertices.reserve(points.size());
   for (const Vec3d& p : points) s.vertices.push_back(vertex(p));
   return s;
 }
 
 Shape convex_hull(const std::vector<Vec3d>& points) {
   std::vector<Grid> grid;
+  grid.reserve(points.size());
   for (const Vec3d& p : points) {
     grid.push_back(
         {std::llround(p.x * kGrid), std::llround(p.y * kGrid), std::llround(p.z * kGrid)});
@@ -149,6 +151,7 @@ Shape triangle(Vec3d p, Vec3d q, Vec3d r) { return cloud({p, q, r}); }
 
 Shape box(Vec3d half) {
   std::vector<Vec3d> corners;
+  corners.reserve(8);
   for (int i = 0; i < 8; ++i) {
     corners.push_back({(i & 1) != 0 ? half.x : -half.x, (i & 2) != 0 ? half.y : -half.y,
                        (i & 4) != 0 ? half.z : -half.z});
@@ -169,6 +172,7 @@ Shape prism(std::uint32_t sides, double radius, double half_height) {
 
 Shape ellipsoid(std::uint32_t count, Vec3d half, Random& random) {
   std::vector<Vec3d> points;
+  points.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     const Vec3d u = random_unit(random);
     points.push_back({half.x * u.x, half.y * u.y, half.z * u.z});
