@@ -18,10 +18,10 @@ constexpr std::array<ModelInfo, 10> kModels{{
     {"golf_club", 104'888, 1'000, 0.060, "iron with a grooved face, hosel and rough back"},
     {"ball_joint_head", 137'060, 1'000, 0.025, "bone-like ball with a neck"},
     {"ball_joint_cup", 137'060, 1'000, 0.020, "socket around ball_joint_head"},
-    {"jaw_lower", 40'180, 1'000, 0.040, "dental arch with teeth and gums"},
-    {"jaw_upper", 47'339, 1'000, 0.040, "the other arch, its teeth between those of jaw_lower"},
+    {"jaw_lower", 40'180, 1'000, 0.035, "dental arch with teeth and gums"},
+    {"jaw_upper", 47'339, 1'000, 0.035, "the other arch, its teeth between those of jaw_lower"},
     {"ellipsoid", 2'000, 100, 0.020, "convex, semi-axes 20, 12 and 8 mm"},
-    {"screw", 40'000, 1'000, 0.010, "screw with six turns of thread and a knurled head"},
+    {"screw", 40'000, 1'000, 0.0094, "screw with six turns of thread and a knurled head"},
     {"nut", 40'000, 1'000, 0.008, "hexagonal nut on the thread of screw"},
 }};
 
