@@ -47,7 +47,7 @@ struct Couple {
 
 Couple align(const std::vector<Point>& points, Face a, Face b) {
   Couple couple;
-  const auto place = [&couple](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
+  const auto place = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
   for (std::size_t s = 0; s < 3; ++s) {
     const auto at = static_cast<std::size_t>(couple.shared);
     const auto in_b = std::find(b.begin() + place(at), b.end(), a[s]);

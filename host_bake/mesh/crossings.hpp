@@ -14,7 +14,7 @@ namespace palpate::bake {
 
 /// Boxes of faces that may meet before the search gives up: a scan has about ten a face, a heap of
 /// copies has n^2.
-inline constexpr std::size_t kMaxMeetings = 10'000'000;
+inline constexpr std::size_t kMaxMeetings = 1'000'000;
 inline constexpr std::size_t kMaxMeetingsPerFace = 100;
 
 /// Pairs of faces (first < second, ascending) that have more in common than the vertices and edges

@@ -59,8 +59,8 @@ Soup parse(std::string_view bytes, const std::filesystem::path& path) {
   }
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
   const std::string_view word = Text(bytes, file, {.comments = true}).word();
-  if (word == "ply") return read_ply(bytes, file);
   if (is_binary_stl(bytes)) return read_stl_binary(bytes, file);
+  if (word == "ply") return read_ply(bytes, file);
   const bool binary = bytes.substr(0, 512).find('\0') != std::string_view::npos;
   if (equals_caseless(word, "solid") && !binary) return read_stl_ascii(bytes, file);
   if (is_off_keyword(word) || extension == ".off") return read_off(bytes, file);
