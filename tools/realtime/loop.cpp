@@ -58,10 +58,13 @@ Loop::Loop(const LoopSettings& settings, hal::Device& device, ContactQuery& quer
 
 void Loop::run(const std::atomic<bool>& stop) noexcept {
   start_ns_ = clock_.now_ns() + period_ns_;
+  // A short run still has ticks to count.
+  const std::uint64_t warm_up =
+      std::min<std::uint64_t>(settings_.warm_up_ticks, settings_.periods / 10);
   ThreadCounters before = thread_counters();
   std::uint64_t period = 0;
   while (period < settings_.periods && !stop.load(std::memory_order_relaxed)) {
-    if (report_.ticks == settings_.warm_up_ticks) before = thread_counters();
+    if (report_.ticks == warm_up) before = thread_counters();
     const std::uint64_t late = run_tick(start_ns_ + period * period_ns_);
     report_.missed += late;
     period += 1 + late;

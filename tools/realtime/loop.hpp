@@ -23,7 +23,7 @@
 namespace palpate::realtime {
 
 struct LoopSettings {
-  double rate_Hz = 1000.0;  ///< 10 to 20000
+  double rate_Hz = 1000.0;  ///< 1 to 20000
   std::uint64_t periods =
       std::numeric_limits<std::uint64_t>::max();  ///< the run ends after so many periods, run or
                                                   ///< missed

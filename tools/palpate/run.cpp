@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// palpate run: the real-time loop against a device.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <thread>
+
+#include "hal/mock/device.hpp"
+#include "tools/palpate/command.hpp"
+#include "tools/palpate/run_summary.hpp"
+#include "tools/palpate/scene_engine.hpp"
+#include "tools/realtime/engine_query.hpp"
+#include "tools/realtime/loop.hpp"
+#include "tools/realtime/realtime_thread.hpp"
+#include "tools/realtime/trace_writer.hpp"
+
+namespace palpate::cli {
+namespace {
+
+/// Ticks that the disk may stand still for: 8 s at 1 kHz.
+constexpr std::size_t kTelemetryRecords = 8192;
+/// Readings of the mock device for each tick, so that what a tick uses is at most half a period
+/// old.
+constexpr double kMockReadingsPerTick = 2.0;
+constexpr std::chrono::milliseconds kWatchEvery(50);
+
+struct RunOptions {
+  std::string scene;
+  std::string device = "mock";
+  std::optional<double> seconds;
+  std::optional<double> rate_Hz;
+  std::string trace;
+  realtime::RealtimeOptions realtime;
+  bool json = false;
+  bool quiet = false;
+};
+
+std::atomic<bool> g_stop{false};
+
+/// Ctrl-C ends the run with its summary for as long as this lives; a second one ends the process.
+class StopOnSignal {
+ public:
+  StopOnSignal() {
+    g_stop = false;
+    struct sigaction action {};
+    action.sa_handler = [](int) { g_stop = true; };
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigaction(SIGINT, &action, &old_interrupt_);
+    sigaction(SIGTERM, &action, &old_terminate_);
+  }
+  ~StopOnSignal() {
+    sigaction(SIGINT, &old_interrupt_, nullptr);
+    sigaction(SIGTERM, &old_terminate_, nullptr);
+  }
+  StopOnSignal(const StopOnSignal&) = delete;
+  StopOnSignal& operator=(const StopOnSignal&) = delete;
+  StopOnSignal(StopOnSignal&&) = delete;
+  StopOnSignal& operator=(StopOnSignal&&) = delete;
+
+ private:
+  struct sigaction old_interrupt_ {};
+  struct sigaction old_terminate_ {};
+};
+
+hal::mock::HandParameters hand_of(const config::Scene& scene) {
+  const config::MockHand& from = scene.hand;
+  hal::mock::HandParameters hand;
+  hand.mass_kg = from.mass_kg;
+  hand.inertia_kg_m2 = from.inertia_kg_m2;
+  hand.grip_N_per_m = from.grip_N_per_m;
+  hand.grip_Nm_per_rad = from.grip_Nm_per_rad;
+  hand.damping_N_s_per_m = from.damping_N_s_per_m;
+  hand.damping_Nm_s_per_rad = from.damping_Nm_s_per_rad;
+  hand.rest = scene.bodies[scene.tool].pose;
+  for (const config::Waypoint& w : from.path) hand.script.push_back({w.t_s, w.pose});
+  return hand;
+}
+
+[[noreturn]] void fail(const std::string& device, const hal::DeviceProblem& problem) {
+  throw Failure(kDevice, "device failed at " + problem.phase + ", " + problem.cause, device,
+                problem.mend);
+}
+
+std::unique_ptr<hal::Device> make_device(const RunOptions& options, const config::Scene& scene,
+                                         double rate_Hz) {
+  const std::string kind = options.device.substr(0, options.device.find(':'));
+  if (kind != "mock") {
+    throw Failure(kDevice, "this build drives the mock device only", options.device,
+                  "run with --device mock");
+  }
+  hal::mock::Options mock;
+  mock.rate_Hz = kMockReadingsPerTick * rate_Hz;
+  // It stands in for hardware, which the loop does not keep waiting either.
+  const int priority = options.realtime.fifo_priority;
+  mock.fifo_priority = priority == 0 ? 0 : std::min(priority + 1, realtime::kMaxFifoPriority);
+  return std::make_unique<hal::mock::MockDevice>(hand_of(scene), mock);
+}
+
+realtime::LoopSettings loop_settings(const RunOptions& options, const config::Scene& scene,
+                                     double rate_Hz, const hal::Capabilities& device) {
+  realtime::LoopSettings settings;
+  settings.rate_Hz = rate_Hz;
+  settings.budget_us = scene.budget_us;
+  if (options.seconds) {
+    settings.periods = static_cast<std::uint64_t>(std::llround(*options.seconds * rate_Hz));
+  }
+  // Both times are for a loop of a haptic rate; a slow one for trying things out needs longer.
+  const double two_periods_s = 2.0 / rate_Hz;
+  settings.command_life_s = std::max(settings.command_life_s, two_periods_s);
+  settings.safety.stale_after_s = std::max(settings.safety.stale_after_s, two_periods_s);
+  settings.safety.connect_within_s = std::max(settings.safety.connect_within_s, two_periods_s);
+  settings.safety.max_force_N = std::min(scene.settings.max_force_N, device.max_force_N);
+  settings.safety.max_torque_Nm = std::min(scene.settings.max_torque_Nm, device.max_torque_Nm);
+  return settings;
+}
+
+/// Runs the loop to its end, telling how far it has come.
+realtime::HostGrant drive(const RunOptions& options, const realtime::LoopSettings& settings,
+                          realtime::Loop& loop) {
+  const StopOnSignal stop_on_signal;
+  const bake::Progress show = progress(options.quiet);
+  realtime::RealtimeThread thread(options.realtime, [&loop] { loop.run(g_stop); });
+  while (!thread.finished()) {
+    std::this_thread::sleep_for(kWatchEvery);
+    if (!options.seconds) continue;
+    show("run", static_cast<double>(loop.periods_passed()) / static_cast<double>(settings.periods));
+  }
+  return thread.join();
+}
+
+/// A file given by the user cannot be written.
+template <class Function>
+auto writing(const std::string& target, Function function) {
+  try {
+    return function();
+  } catch (const std::system_error& e) {
+    throw Failure(kOther, e.what(), target, "give a place that exists, is writable and has room");
+  }
+}
+
+/// A fault has ended the rendering: whose it was.
+Exit exit_of(realtime::FaultSet faults) {
+  using realtime::Fault;
+  const bool of_device = faults.has(Fault::stale_state) || faults.has(Fault::bad_state) ||
+                         faults.has(Fault::device_error);
+  return of_device ? kDevice : faults.empty() ? kDone : kOther;
+}
+
+void report(const RunOptions& options, const RunOutcome& outcome) {
+  if (options.json) {
+    std::cout << run_json(outcome).dump(2) << "\n";
+  } else {
+    std::cout << run_text(outcome);
+  }
+  set_exit(broken_promises(outcome).empty() ? exit_of(outcome.report.faults) : kPromiseBroken);
+}
+
+void run(const RunOptions& options) {
+  const config::Scene scene = config::load_scene(options.scene);
+  const double rate_Hz = options.rate_Hz.value_or(scene.rate_Hz);
+  const auto device = make_device(options, scene, rate_Hz);
+  SceneEngine engine(scene);
+  realtime::EngineQuery query(engine.engine(), engine.start_poses(), scene.tool);
+  if (const auto problem = device->open()) fail(options.device, *problem);
+
+  const auto settings = loop_settings(options, scene, rate_Hz, device->capabilities());
+  hal::MonotonicClock clock;
+  hal::Ring<realtime::TraceRecord> ring(options.trace.empty() ? 0 : kTelemetryRecords);
+  std::unique_ptr<realtime::TraceWriter> trace;
+  if (!options.trace.empty()) {
+    trace = writing(options.trace, [&] {
+      return std::make_unique<realtime::TraceWriter>(options.trace, scene.file, rate_Hz, ring);
+    });
+  }
+  const auto loop =
+      std::make_unique<realtime::Loop>(settings, *device, query, clock, trace ? &ring : nullptr);
+  if (const auto problem = device->start()) fail(options.device, *problem);
+
+  RunOutcome outcome;
+  outcome.grant = drive(options, settings, *loop);
+  device->stop();
+  outcome.scene = scene.file;
+  outcome.device = options.device;
+  outcome.rate_Hz = rate_Hz;
+  outcome.budget_us = scene.budget_us;
+  outcome.report = loop->report();
+  if (trace) {
+    writing(options.trace, [&] { trace->commit(); });
+    outcome.trace = options.trace;
+    outcome.telemetry_dropped = ring.dropped();
+  }
+  report(options, outcome);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Run the real-time loop against a device");
+  command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
+  command->add_option("--device", options->device, "mock, usb[:SERIAL] or falcon[:SERIAL]")
+      ->check(CLI::Validator(
+          [](const std::string& device) -> std::string {
+            const std::string kind = device.substr(0, device.find(':'));
+            const bool known = device == "mock" || kind == "usb" || kind == "falcon";
+            return known ? "" : "unknown device '" + device + "'";
+          },
+          "DEVICE"))
+      ->capture_default_str();
+  command->add_option("--seconds", options->seconds, "how long; absent: until Ctrl-C")
+      ->check(CLI::Range(0.001, 1e7));
+  command->add_option("--rate", options->rate_Hz, "ticks a second; absent: the scene's")
+      ->check(CLI::Range(1.0, 20000.0));
+  command->add_option("-o", options->trace, "write a record of each tick to this file");
+  command
+      ->add_option("--priority", options->realtime.fifo_priority,
+                   "SCHED_FIFO priority of the loop; 0: an ordinary thread")
+      ->check(CLI::Range(0, realtime::kMaxFifoPriority))
+      ->capture_default_str();
+  command->add_option("--cpu", options->realtime.cpu, "keep the loop on this processor")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--json", options->json, "print the summary as JSON");
+  command->add_flag("--quiet", options->quiet, "no progress");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace palpate::cli
