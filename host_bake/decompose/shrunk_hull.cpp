@@ -13,6 +13,7 @@ namespace palpate::bake {
 namespace {
 
 constexpr std::size_t kSmallHull = 24;  // facets up to which trying all of them beats walking
+constexpr int kCuts = 8;  // that mostly leave nothing of a triangle that does not enter
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
 }  // namespace
@@ -21,7 +22,7 @@ bool ShrunkHull::small() const { return planes_.size() <= kSmallHull; }
 
 void ShrunkHull::build(const GrowingHull& hull) {
   find_planes(hull);
-  find_centre(hull);
+  find_centre();
   thin_ = false;
   for (std::uint32_t p = 0; p < planes_.size(); ++p)
     if (!(height(p, centre_) < 0)) thin_ = true;
@@ -31,6 +32,7 @@ void ShrunkHull::build(const GrowingHull& hull) {
 void ShrunkHull::find_planes(const GrowingHull& hull) {
   const std::span<const GrowingHull::Facet> slots = hull.slots();
   planes_.clear();
+  corners_.clear();
   neighbours_.clear();
   plane_of_slot_.assign(slots.size(), 0);
   box_ = {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
@@ -39,10 +41,12 @@ void ShrunkHull::find_planes(const GrowingHull& hull) {
     plane_of_slot_[s] = static_cast<std::uint32_t>(planes_.size());
     const Triangle& t = slots[s].vertices;
     for (const std::uint32_t v : t) box_.add(hull.points()[v]);
-    const Vec3d a = position(hull.points()[t[0]]);
-    const Vec3d n = cross(position(hull.points()[t[1]]) - a, position(hull.points()[t[2]]) - a);
+    const std::array<Vec3d, 3> c = {position(hull.points()[t[0]]), position(hull.points()[t[1]]),
+                                    position(hull.points()[t[2]])};
+    const Vec3d n = cross(c[1] - c[0], c[2] - c[0]);
     const Vec3d normal = (1 / norm(n)) * n;
-    planes_.push_back({normal, dot(normal, a) - kShrink_rel});
+    planes_.push_back({normal, dot(normal, c[0]) - kShrink_rel});
+    corners_.push_back(c);
     neighbours_.push_back(slots[s].neighbours);
   }
   for (auto& around : neighbours_)
@@ -51,25 +55,18 @@ void ShrunkHull::find_planes(const GrowingHull& hull) {
   visit_ = 0;
 }
 
-void ShrunkHull::find_centre(const GrowingHull& hull) {
+void ShrunkHull::find_centre() {
   Vec3d origin{};
-  double corners = 0;
-  for (const GrowingHull::Facet& facet : hull.slots())
-    if (facet.alive)
-      for (const std::uint32_t v : facet.vertices) {
-        origin += position(hull.points()[v]);
-        ++corners;
-      }
-  origin = (1 / corners) * origin;
+  for (const auto& c : corners_) origin += c[0] + c[1] + c[2];
+  origin = (1 / (3 * static_cast<double>(corners_.size()))) * origin;
 
   // Tetrahedra over the facets with the apex at an inner point: all volumes are positive.
   Vec3d moment{};
   double volume = 0;
-  for (const GrowingHull::Facet& facet : hull.slots()) {
-    if (!facet.alive) continue;
-    const Vec3d a = position(hull.points()[facet.vertices[0]]) - origin;
-    const Vec3d b = position(hull.points()[facet.vertices[1]]) - origin;
-    const Vec3d c = position(hull.points()[facet.vertices[2]]) - origin;
+  for (const auto& corner : corners_) {
+    const Vec3d a = corner[0] - origin;
+    const Vec3d b = corner[1] - origin;
+    const Vec3d c = corner[2] - origin;
     const double v = dot(cross(a, b), c);
     volume += v;
     moment += (v / 4) * (a + b + c);
@@ -77,9 +74,21 @@ void ShrunkHull::find_centre(const GrowingHull& hull) {
   centre_ = volume > 0 ? origin + (1 / volume) * moment : origin;
 }
 
-/// Looks for a plane for which separates(plane): tries all of a small hull; climbs to the plane
-/// that cuts the ray from the centre to `middle` first on a large one. The climb is on the polar
-/// dual, a convex polytope, so only facets in one plane can stop it early.
+/// The facet next to `facet` in the direction of the point, seen from the centre; itself where the
+/// ray to the point leaves through it. `turn` chooses between two ways, so that no walk goes round
+/// for ever.
+std::uint32_t ShrunkHull::step_toward(std::uint32_t facet, Vec3d ray, std::size_t turn) const {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t i = (turn + k) % 3;
+    const Vec3d a = corners_[facet][i] - centre_;
+    const Vec3d b = corners_[facet][(i + 1) % 3] - centre_;
+    if (dot(cross(a, b), ray) < 0) return neighbours_[facet][i];
+  }
+  return facet;
+}
+
+/// Looks for a plane for which separates(plane): tries all of a small hull; walks over a large one
+/// to the facet between the centre and `middle`, which becomes last_.
 template <class Separates>
 bool ShrunkHull::find_separating(Vec3d middle, Separates separates) {
   if (separates(last_)) return true;
@@ -92,27 +101,12 @@ bool ShrunkHull::find_separating(Vec3d middle, Separates separates) {
     return false;
   }
   const Vec3d ray = middle - centre_;
-  const auto score = [&](std::uint32_t p) {
-    return dot(planes_[p].normal, ray) / -height(p, centre_);
-  };
-  std::uint32_t best = last_;
-  double best_score = score(best);
-  for (bool climbing = true; climbing;) {
-    climbing = false;
-    for (const std::uint32_t n : neighbours_[best]) {
-      const double s = score(n);
-      if (!(s > best_score)) continue;
-      best = n;
-      best_score = s;
-      climbing = true;
-      break;
-    }
-    if (separates(best)) {
-      last_ = best;
-      return true;
-    }
+  for (std::size_t step = 0; step < planes_.size(); ++step) {
+    const std::uint32_t next = step_toward(last_, ray, step);
+    if (next == last_) return false;
+    last_ = next;
+    if (separates(last_)) return true;
   }
-  last_ = best;
   return false;
 }
 
@@ -147,28 +141,46 @@ bool ShrunkHull::clip_away(std::uint32_t plane) {
   return !polygon_.empty();
 }
 
-bool ShrunkHull::entered_by(Vec3d a, Vec3d b, Vec3d c) {
-  const auto separates = [&](std::uint32_t p) {
-    return height(p, a) > 0 && height(p, b) > 0 && height(p, c) > 0;
-  };
-  if (find_separating((1.0 / 3) * (a + b + c), separates)) return false;
-  polygon_ = {a, b, c};
-  // Outward in rings from the last plane: those that cut most come first, and mostly leave nothing.
+/// Cuts polygon_ by the planes that lie between the centre and its middle; false where nothing is
+/// left.
+bool ShrunkHull::cut_toward_centre() {
+  for (int cut = 0; cut < kCuts; ++cut) {
+    Vec3d middle{};
+    for (const Vec3d p : polygon_) middle += p;
+    middle = (1 / static_cast<double>(polygon_.size())) * middle;
+    const auto separates = [&](std::uint32_t plane) {
+      return std::all_of(polygon_.begin(), polygon_.end(),
+                         [&](Vec3d p) { return height(plane, p) > 0; });
+    };
+    if (find_separating(middle, separates)) return false;
+    if (!(height(last_, middle) > 0)) return true;
+    if (!clip_away(last_)) return false;
+  }
+  return true;
+}
+
+/// Cuts polygon_ by all planes, in rings about the last one; false where nothing is left.
+bool ShrunkHull::cut_by_all() {
   ++visit_;
   order_.assign(1, last_);
   visited_[last_] = visit_;
   for (std::size_t next = 0; next < order_.size(); ++next) {
-    const std::uint32_t p = order_[next];
-    const bool cuts =
-        std::any_of(polygon_.begin(), polygon_.end(), [&](Vec3d v) { return height(p, v) > 0; });
-    if (cuts && !clip_away(p)) return false;
-    for (const std::uint32_t n : neighbours_[p]) {
+    const std::uint32_t plane = order_[next];
+    const bool cuts = std::any_of(polygon_.begin(), polygon_.end(),
+                                  [&](Vec3d p) { return height(plane, p) > 0; });
+    if (cuts && !clip_away(plane)) return false;
+    for (const std::uint32_t n : neighbours_[plane]) {
       if (visited_[n] == visit_) continue;
       visited_[n] = visit_;
       order_.push_back(n);
     }
   }
   return true;
+}
+
+bool ShrunkHull::entered_by(Vec3d a, Vec3d b, Vec3d c) {
+  polygon_ = {a, b, c};
+  return cut_toward_centre() && cut_by_all();
 }
 
 }  // namespace palpate::bake

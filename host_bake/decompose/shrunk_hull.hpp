@@ -43,12 +43,16 @@ class ShrunkHull {
     return dot(planes_[plane].normal, p) - planes_[plane].offset;
   }
   void find_planes(const GrowingHull& hull);
-  void find_centre(const GrowingHull& hull);
+  void find_centre();
+  [[nodiscard]] std::uint32_t step_toward(std::uint32_t facet, Vec3d ray, std::size_t turn) const;
   template <class Separates>
   bool find_separating(Vec3d middle, Separates separates);
-  bool clip_away(std::uint32_t plane);
+  [[nodiscard]] bool clip_away(std::uint32_t plane);
+  [[nodiscard]] bool cut_toward_centre();
+  [[nodiscard]] bool cut_by_all();
 
   std::vector<Plane> planes_;
+  std::vector<std::array<Vec3d, 3>> corners_;             // of the facet in each plane
   std::vector<std::array<std::uint32_t, 3>> neighbours_;  // as in the hull
   std::vector<std::uint32_t> plane_of_slot_;              // of the hull's slots
   FaceBox box_;
