@@ -22,8 +22,8 @@ struct Field {
   bool operator==(const Field&) const = default;
 };
 
-void PrintTo(const Field& field, std::ostream* out) {
-  *out << field.name << " at " << field.offset << ", " << field.bytes << " bytes";
+std::ostream& operator<<(std::ostream& out, const Field& field) {
+  return out << field.name << " at " << field.offset << ", " << field.bytes << " bytes";
 }
 
 std::string page() { return read_file(PALPATE_DOCS "/FORMAT.md"); }
