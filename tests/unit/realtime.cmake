@@ -5,3 +5,10 @@ palpate_test(realtime_test
     unit/realtime_wall.cpp unit/realtime_trace.cpp unit/realtime_thread.cpp
     unit/realtime_host_checks.cpp
   LIBS palpate_tools)
+
+# These run the executable.
+find_package(nlohmann_json REQUIRED)
+palpate_test(realtime_process_test SOURCES unit/realtime_process.cpp
+  LIBS palpate_rt nlohmann_json::nlohmann_json)
+add_dependencies(realtime_process_test palpate)
+target_compile_definitions(realtime_process_test PRIVATE PALPATE_EXECUTABLE="$<TARGET_FILE:palpate>")

@@ -20,6 +20,21 @@ TraceRecord record(std::uint64_t tick) {
   return r;
 }
 
+TEST(TraceRecord, layout_is_the_documented_one) {
+  EXPECT_EQ(offsetof(TraceHeader, records), 24u);
+  EXPECT_EQ(offsetof(TraceHeader, rate_Hz), 40u);
+  EXPECT_EQ(offsetof(TraceRecord, position_m), 16u);
+  EXPECT_EQ(offsetof(TraceRecord, orientation), 40u);
+  EXPECT_EQ(offsetof(TraceRecord, rendered_force_N), 72u);
+  EXPECT_EQ(offsetof(TraceRecord, sent_force_N), 120u);
+  EXPECT_EQ(offsetof(TraceRecord, min_distance_m), 144u);
+  EXPECT_EQ(offsetof(TraceRecord, energy_J), 168u);
+  EXPECT_EQ(offsetof(TraceRecord, latency_ns), 176u);
+  EXPECT_EQ(offsetof(TraceRecord, front_nodes), 200u);
+  EXPECT_EQ(offsetof(TraceRecord, state), 204u);
+  EXPECT_EQ(offsetof(TraceRecord, faults), 206u);
+}
+
 TEST(TraceWriter, committed_file_holds_header_path_and_every_record) {
   const test::TemporaryFolder folder;
   constexpr std::uint64_t kRecords = 5000;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palpate::realtime {
 namespace {
@@ -19,9 +20,11 @@ bool is_finite(const Pose& p) {
 
 Wrench scaled(double gain, const Wrench& w) { return {gain * w.force_N, gain * w.torque_Nm}; }
 
+/// Shortened to a length; rounding must not carry it past the limit by a last digit.
 Vec3d limited(const Vec3d& v, double max_length) {
+  constexpr double kJustBelowOne = 1 - 4 * std::numeric_limits<double>::epsilon();
   const double length = norm(v);
-  return length > max_length ? (max_length / length) * v : v;
+  return length > max_length ? (kJustBelowOne * max_length / length) * v : v;
 }
 
 /// How far a ramp has come after a time, in [0, 1]; a ramp of no length is over at once.

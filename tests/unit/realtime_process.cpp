@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `palpate run` and `palpate doctor` as processes: two cubes of a centimetre, the hand pressing one
+// on the other along x. How late a tick is depends on the machine, so exit statuses 0 and 5 are
+// both right.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "../support/process.hpp"
+#include "../support/temporary_folder.hpp"
+#include "../support/tiny_image.hpp"
+
+namespace palpate {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kScene = R"([engine]
+delta_m = 0.0005
+budget_us = 400.0
+[force]
+stiffness_N_per_m = 600.0
+max_force_N = 0.5
+max_torque_Nm = 0.1
+[[body]]
+name = "tool"
+image = "cube.palp"
+role = "tool"
+position = [0.0102, 0.0, 0.0]
+[[body]]
+name = "base"
+image = "cube.palp"
+role = "fixed"
+[[mock.path]]
+t_s = 0.0
+position = [0.0102, 0.0, 0.0]
+[[mock.path]]
+t_s = 0.2
+position = [0.0090, 0.0, 0.0]
+[[mock.path]]
+t_s = 100.0
+position = [0.0090, 0.0, 0.0]
+)";
+
+class Run : public ::testing::Test {
+ protected:
+  Run() {
+    const std::vector<test::Part> cube = {test::box_part({0, 0, 0}, {0.5f, 0.5f, 0.5f})};
+    const auto image = test::seal(test::parts_of(cube, 0.01));
+    std::string bytes(image.size(), '\0');
+    std::memcpy(bytes.data(), image.data(), image.size());
+    folder_.write("cube.palp", bytes);
+    folder_.write("scene.toml", kScene);
+  }
+
+  test::Outcome run(std::vector<std::string> options) const {
+    options.insert(options.begin(),
+                   {PALPATE_EXECUTABLE, "run", (folder_.path() / "scene.toml").string()});
+    return test::run(options);
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+bool kept_or_late(int status) { return status == 0 || status == 5; }
+
+TEST_F(Run, json_has_every_documented_key) {
+  const test::Outcome outcome = run({"--seconds", "0.6", "--json", "--quiet"});
+  ASSERT_TRUE(kept_or_late(outcome.status)) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const json j = json::parse(outcome.out);
+  for (const char* key : {"ticks", "rate_hz", "missed", "overrun_ns_max", "latency_ns", "tick_ns",
+                          "allocations", "page_faults", "truncated", "contacts_mean", "force_N",
+                          "energy_J_min", "state", "faults", "scheduler", "telemetry_dropped"}) {
+    EXPECT_TRUE(j.contains(key)) << key;
+  }
+  for (const char* key : {"p50", "p99", "p999", "max"}) {
+    EXPECT_TRUE(j["latency_ns"].contains(key)) << key;
+    EXPECT_TRUE(j["tick_ns"].contains(key)) << key;
+  }
+  EXPECT_GE(j["ticks"].get<int>() + j["missed"].get<int>(), 600);
+  EXPECT_EQ(j["rate_hz"], 1000.0);
+}
+
+TEST_F(Run, exit_status_says_whether_every_promise_was_kept) {
+  const test::Outcome outcome = run({"--seconds", "0.6", "--json", "--quiet"});
+  const json j = json::parse(outcome.out);
+  const int allocations = j["allocations"].is_null() ? 0 : j["allocations"].get<int>();
+  const bool kept = j["missed"] == 0 && j["page_faults"] == 0 && allocations == 0;
+  if (j["faults"].empty()) {
+    EXPECT_EQ(outcome.status, kept ? 0 : 5);
+  }
+  EXPECT_EQ(allocations, 0);
+}
+
+TEST_F(Run, pressing_hand_feels_a_force_within_the_scenes_limit) {
+  const json j = json::parse(run({"--seconds", "1.0", "--json", "--quiet"}).out);
+  if (!j["faults"].empty()) GTEST_SKIP() << "the machine is too busy to hold the loop up";
+  EXPECT_GT(j["force_N"]["max"].get<double>(), 0.01);
+  EXPECT_LE(j["force_N"]["max"].get<double>(), 0.5);
+  EXPECT_EQ(j["state"], "rendering");
+}
+
+TEST_F(Run, text_names_what_a_reader_looks_for) {
+  const test::Outcome outcome = run({"--seconds", "0.2"});
+  ASSERT_TRUE(kept_or_late(outcome.status)) << outcome.err;
+  for (const char* word : {"deadlines", "wake-up lateness", "tick time", "contacts", "force",
+                           "allocations", "page faults", "scheduler", "romise"}) {
+    EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
+  }
+}
+
+TEST_F(Run, rate_of_the_command_line_overrides_the_scenes) {
+  const json j = json::parse(run({"--seconds", "0.5", "--rate", "200", "--json", "--quiet"}).out);
+  EXPECT_EQ(j["rate_hz"], 200.0);
+  EXPECT_NEAR(j["ticks"].get<int>() + j["missed"].get<int>(), 100, 60);
+}
+
+TEST_F(Run, trace_holds_a_record_for_each_tick) {
+  const auto file = folder_.path() / "run.trace";
+  const json j =
+      json::parse(run({"--seconds", "0.5", "--json", "--quiet", "-o", file.string()}).out);
+  const std::string trace = test::read_file(file);
+  ASSERT_GT(trace.size(), 64u);
+  EXPECT_EQ(trace.substr(0, 8), "PALTRACE");
+  std::uint64_t records = 0;
+  std::memcpy(&records, trace.data() + 24, sizeof records);
+  EXPECT_EQ(records, j["ticks"].get<std::uint64_t>() - j["telemetry_dropped"].get<std::uint64_t>());
+}
+
+TEST_F(Run, devices_that_this_build_cannot_drive_are_a_device_error) {
+  for (const char* device : {"usb", "falcon:123"}) {
+    const test::Outcome outcome = run({"--device", device});
+    EXPECT_EQ(outcome.status, 4);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err.rfind("palpate: error: this build drives the mock device only: ", 0), 0u)
+        << outcome.err;
+  }
+}
+
+TEST_F(Run, wrong_options_are_a_usage_error) {
+  EXPECT_EQ(run({"--device", "pencil"}).status, 2);
+  EXPECT_EQ(run({"--rate", "0"}).status, 2);
+  EXPECT_EQ(run({"--seconds", "-1"}).status, 2);
+  EXPECT_EQ(run({"--priority", "99"}).status, 2);
+}
+
+TEST_F(Run, impossible_trace_is_refused_before_the_run) {
+  const test::Outcome outcome = run({"-o", (folder_.path() / "none" / "x.trace").string()});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("cannot write the trace"), std::string::npos) << outcome.err;
+}
+
+TEST(Doctor, json_is_a_list_of_checks_with_the_documented_keys) {
+  const test::Outcome outcome = test::run({PALPATE_EXECUTABLE, "doctor", "--json"});
+  EXPECT_EQ(outcome.status, 0);
+  const json list = json::parse(outcome.out);
+  ASSERT_GE(list.size(), 8u);
+  for (const json& check : list) {
+    for (const char* key : {"check", "ok", "found", "wanted", "mend"}) {
+      EXPECT_TRUE(check.contains(key)) << key;
+    }
+    EXPECT_EQ(check["ok"].get<bool>(), check["mend"] == "");
+  }
+}
+
+TEST(Doctor, text_exits_with_0_whatever_it_finds) {
+  EXPECT_EQ(test::run({PALPATE_EXECUTABLE, "doctor"}).status, 0);
+}
+
+}  // namespace
+}  // namespace palpate
