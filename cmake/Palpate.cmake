@@ -16,6 +16,12 @@ endif()
 set(PALPATE_SANITIZE "" CACHE STRING "Sanitizers for every target, as -fsanitize takes them (address,undefined or thread)")
 option(PALPATE_COVERAGE "Instrument for gcov" OFF)
 
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12's superword vectoriser turns the round trip double -> float -> double of two neighbours into nothing: what is
+  # rounded to float would then be computed with unrounded.
+  add_compile_options(-fno-tree-slp-vectorize)
+endif()
+
 add_library(palpate_flags INTERFACE)
 target_compile_options(palpate_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wold-style-cast -Wcast-align
