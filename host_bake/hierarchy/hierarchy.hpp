@@ -28,7 +28,7 @@ struct TreePiece {
   std::vector<std::uint32_t> vertices;
   /// The first ones of `vertices`.
   std::uint32_t hull_vertices = 0;
-  /// Of the hull: 2 flat, 3 solid.
+  /// Of the hull, as in HullMesh: faces without area make straight ones.
   int dimension = 3;
   /// Local, as in HullMesh::faces.
   std::vector<std::array<std::uint32_t, 3>> hull_faces;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each hull by itself: its vertices, its faces, its neighbour lists, its sphere.
+// Each hull by itself: its vertices, its neighbour lists, its sphere.
 #include <algorithm>
 #include <map>
 #include <vector>
 
 #include "host_bake/metrics/exact.hpp"
-#include "host_bake/metrics/vector.hpp"
 #include "host_bake/pack/adjacency.hpp"
 #include "host_bake/verify/proofs.hpp"
 
@@ -13,32 +12,6 @@ namespace palpate::bake {
 namespace {
 
 using Corner = std::uint32_t;
-
-double area(const std::vector<PointF>& points, const Corner (&v)[3]) {
-  const Vec3d a = vec(points[v[0]]);
-  return norm(cross(vec(points[v[1]]) - a, vec(points[v[2]]) - a)) / 2;
-}
-
-double hull_area(const std::vector<PointF>& points, const HullMesh& hull) {
-  double sum = 0;
-  for (const auto& f : hull.faces) sum += area(points, {f[0], f[1], f[2]});
-  return sum;
-}
-
-std::string uncovered(const Evidence& evidence, std::uint32_t index) {
-  const image::Piece& piece = evidence.image.pieces[index];
-  const HullMesh& hull = evidence.hulls[index];
-  if (piece.triangles == 0 || hull.dimension < 3) return {};
-  const std::vector<PointF>& points = evidence.points[index];
-  double covered = 0;
-  for (const image::Triangle& t : patch(evidence, piece)) covered += area(points, t.vertices);
-  for (std::uint32_t i = 0; i < piece.virtual_faces; ++i) {
-    covered += area(points, evidence.image.virtual_faces[piece.first_virtual_face + i].vertices);
-  }
-  const double whole = hull_area(points, hull);
-  if (covered >= whole * (1 - 1e-9)) return {};
-  return "triangles and virtual faces cover " + std::to_string(covered / whole) + " of the hull";
-}
 
 std::string not_extreme(const Evidence& evidence, std::uint32_t index) {
   const image::Piece& piece = evidence.image.pieces[index];
@@ -126,11 +99,6 @@ std::string outside_sphere(const Evidence& evidence, std::uint32_t index) {
 }
 
 }  // namespace
-
-Proof prove_hulls_covered(const Evidence& evidence) {
-  return prove_each("patch and virtual faces cover the hull", evidence.hulls.size(),
-                    [&](std::uint32_t i) { return uncovered(evidence, i); });
-}
 
 Proof prove_hull_vertices_extreme(const Evidence& evidence) {
   return prove_each("hull vertices are the extreme points", evidence.hulls.size(),

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+if(PALPATE_HOST)
+  palpate_test(bake_test
+    SOURCES
+      unit/bake_hierarchy.cpp unit/bake_metrics.cpp unit/bake_pack.cpp unit/bake_verify.cpp
+      golden/bake_image.cpp unit/mesh_support.cpp
+    LIBS palpate_bake)
+
+  find_package(nlohmann_json REQUIRED)
+  palpate_test(bake_command_test SOURCES unit/bake_command.cpp
+    LIBS palpate_rt nlohmann_json::nlohmann_json)
+  add_dependencies(bake_command_test palpate)
+  target_compile_definitions(bake_command_test PRIVATE PALPATE_EXECUTABLE="$<TARGET_FILE:palpate>")
+endif()
