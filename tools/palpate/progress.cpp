@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -23,7 +24,7 @@ constexpr int kBarWidth = 30;
 std::string time_left(Clock::duration spent, double done) {
   if (done < 0.01) return "";
   const double left_s = std::chrono::duration<double>(spent).count() * (1 - done) / done;
-  return ", " + std::to_string(static_cast<long>(left_s + 0.5)) + " s left";
+  return ", " + std::to_string(std::lround(left_s)) + " s left";
 }
 
 class Printer {
