@@ -42,15 +42,15 @@ std::vector<Mapping> readable_mappings() {
   return mappings;
 }
 
-/// Whether the kernel knows how to. Single mappings may refuse (device memory): the loop does not
-/// use those.
+/// Whether the kernel knows how to. Single mappings refuse (those of devices and of the kernel's
+/// own): the loop does not fault in them.
 bool populate_all() {
-  bool known = true;
+  bool known = false;
   for (const Mapping& m : readable_mappings()) {
     const int advice = m.writable ? kPopulateWrite : kPopulateRead;
     // NOLINTNEXTLINE(performance-no-int-to-ptr): addresses come as text from the kernel
     void* const begin = reinterpret_cast<void*>(m.begin);
-    if (::madvise(begin, m.end - m.begin, advice) != 0 && errno == EINVAL) known = false;
+    if (::madvise(begin, m.end - m.begin, advice) == 0) known = true;
   }
   return known;
 }

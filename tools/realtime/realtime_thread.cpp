@@ -14,7 +14,8 @@
 namespace palpate::realtime {
 namespace {
 
-constexpr std::size_t kStackBytes = std::size_t(1) << 20;
+/// Generous: the thread sanitizer keeps close to a megabyte of its own there.
+constexpr std::size_t kStackBytes = std::size_t(1) << 21;
 /// More than the loop and the contact engine use together, less than the stack.
 constexpr std::size_t kTouchedStackBytes = std::size_t(1) << 18;
 
