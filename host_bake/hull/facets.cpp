@@ -177,6 +177,7 @@ HullMesh canonical_flat_hull(std::span<const std::uint32_t> ring) {
   for (const std::uint32_t v : ring)
     polygon.push_back(static_cast<std::uint32_t>(
         std::lower_bound(hull.vertices.begin(), hull.vertices.end(), v) - hull.vertices.begin()));
+  std::rotate(polygon.begin(), std::min_element(polygon.begin(), polygon.end()), polygon.end());
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
     hull.faces.push_back({polygon[0], polygon[i], polygon[i + 1]});
     hull.faces.push_back({polygon[0], polygon[i + 1], polygon[i]});

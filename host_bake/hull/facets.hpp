@@ -33,7 +33,8 @@ FacetHull canonical_hull(std::span<const PointF> points, std::span<const Triangl
 std::vector<std::uint32_t> flat_ring(std::span<const PointF> points, std::vector<std::uint32_t> ids,
                                      Projection view);
 
-/// The hull whose extreme points flat_ring() gave: both sides, or none for fewer than three points.
+/// The hull whose extreme points flat_ring() gave, from any of them on: both sides, or none for
+/// fewer than three points.
 HullMesh canonical_flat_hull(std::span<const std::uint32_t> ring);
 
 }  // namespace palpate::bake

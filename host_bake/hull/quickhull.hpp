@@ -12,7 +12,8 @@ namespace palpate::bake {
 
 /// Some triangulation of the hull's surface, as canonical_hull() takes it. `ids` index `points`,
 /// are ordered by position (lexicographically), hold no two equal positions and span the space.
-/// Exact; O(n log n) expected.
+/// There are more than four: CGAL 5.5.1 turns some single tetrahedra inside out. Exact; O(n log n)
+/// expected.
 std::vector<Triangle> quickhull(std::span<const PointF> points, std::span<const std::uint32_t> ids);
 
 }  // namespace palpate::bake

@@ -1,0 +1,477 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "decompose_oracle.hpp"
+
+#include <algorithm>
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <random>
+#include <set>
+
+#include "rt_core/image/format.hpp"
+
+namespace palpate::test {
+namespace {
+
+using bake::Face;
+using bake::HullMesh;
+using bake::NormalMesh;
+using bake::Patch;
+using bake::PointF;
+using Exact = boost::multiprecision::int1024_t;
+using Triple = std::array<std::uint32_t, 3>;
+
+constexpr long double kShrink = 1e-7L;
+
+struct Vec {
+  long double x = 0, y = 0, z = 0;
+};
+Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vec operator-(Vec a, Vec b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vec operator*(long double s, Vec a) { return {s * a.x, s * a.y, s * a.z}; }
+long double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vec cross(Vec a, Vec b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+long double length(Vec a) { return std::sqrt(dot(a, a)); }
+Vec vec(const PointF& p) { return {p[0], p[1], p[2]}; }
+
+/// A float below 2^100 as a whole number of units of 2^-173.
+Exact exact(float x) {
+  int exponent = 0;
+  const float mantissa = std::frexp(x, &exponent);
+  const Exact whole(static_cast<std::int64_t>(std::ldexp(mantissa, 24)));
+  return whole * (Exact(1) << static_cast<unsigned>(exponent - 24 + 173));
+}
+
+/// Distance of a point from a triangle: from its plane where the foot is inside, else from its
+/// sides.
+long double distance(Vec p, Vec a, Vec b, Vec c) {
+  const auto from_side = [&](Vec s, Vec e) {
+    const Vec d = e - s;
+    const long double l = dot(d, d);
+    const long double t = l > 0 ? std::clamp(dot(p - s, d) / l, 0.0L, 1.0L) : 0.0L;
+    return length(p - (s + t * d));
+  };
+  const Vec n = cross(b - a, c - a);
+  const bool inside = dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
+                      dot(cross(a - c, p - c), n) >= 0 && dot(n, n) > 0;
+  if (inside) return std::abs(dot(n, p - a)) / length(n);
+  return std::min({from_side(a, b), from_side(b, c), from_side(c, a)});
+}
+
+struct Plane {
+  Vec normal;
+  long double offset;
+};
+
+Plane plane_of(Vec a, Vec b, Vec c) {
+  const Vec n = cross(b - a, c - a);
+  const Vec unit = (1 / length(n)) * n;
+  return {unit, dot(unit, a)};
+}
+
+class Judge {
+ public:
+  Judge(const NormalMesh& mesh, const bake::CheckReport& report, const std::vector<Patch>& patches)
+      : mesh_(mesh), report_(report), patches_(patches), patch_of_(mesh.faces.size(), kNone) {
+    for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) by_x_.push_back(f);
+    std::sort(by_x_.begin(), by_x_.end(), [&](auto a, auto b) { return low_x(a) < low_x(b); });
+    for (const std::uint32_t f : by_x_) widest_ = std::max(widest_, high_x(f) - low_x(f));
+    for (const Face& t : mesh.faces) area_.push_back(in_line(at(t[0]), at(t[1]), at(t[2])) ? 0 : 1);
+    for (const std::size_t f : report.crossing_faces) crossing_.insert(f);
+    for (const std::size_t f : crossing_) unsound_.insert(report.face_component[f]);
+  }
+
+  std::string run() {
+    for (std::uint32_t p = 0; p < patches_.size(); ++p) {
+      for (const std::uint32_t f : patches_[p].faces) {
+        if (patch_of_[f] != kNone) return "face " + std::to_string(f) + " is in two patches";
+        patch_of_[f] = p;
+      }
+    }
+    for (const std::uint32_t p : patch_of_)
+      if (p == kNone) return "a face is in no patch";
+    for (std::uint32_t p = 0; p < patches_.size(); ++p) {
+      const std::string wrong = judge(p);
+      if (!wrong.empty())
+        return "patch " + std::to_string(p) + " of " + std::to_string(patches_[p].faces.size()) +
+               " faces from " + std::to_string(patches_[p].faces.front()) + ": " + wrong;
+    }
+    return {};
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  float low_x(std::uint32_t f) const { return extent(f, 0).first; }
+  float high_x(std::uint32_t f) const { return extent(f, 0).second; }
+  std::pair<float, float> extent(std::uint32_t f, std::size_t axis) const {
+    return std::minmax(
+        {at(mesh_.faces[f][0])[axis], at(mesh_.faces[f][1])[axis], at(mesh_.faces[f][2])[axis]});
+  }
+  const PointF& at(std::uint32_t v) const { return mesh_.points[v]; }
+  Vec corner(std::uint32_t f, std::size_t i) const { return vec(at(mesh_.faces[f][i])); }
+  bool has_area(std::uint32_t f) const { return area_[f] != 0; }
+  int side_of_face(std::uint32_t f, std::uint32_t v) const {
+    const Face& t = mesh_.faces[f];
+    return exact_side(at(t[0]), at(t[1]), at(t[2]), at(v));
+  }
+
+  std::string judge(std::uint32_t p) {
+    const Patch& patch = patches_[p];
+    for (const auto& part :
+         {judge_lists(patch), judge_flags(patch), judge_edges(patch), judge_planes(patch)})
+      if (!part.empty()) return part;
+    std::vector<PointF> points;
+    for (const std::uint32_t v : patch.vertices) points.push_back(at(v));
+    HullMesh hull = patch.hull;
+    const std::string wrong = judge_hull(points, hull);
+    if (!wrong.empty()) return wrong;
+    points_.clear();
+    for (const PointF& q : points) points_.push_back(vec(q));
+    const std::string cover = judge_cover(patch);
+    if (!cover.empty()) return cover;
+    return hull.dimension == 3 ? judge_interior(p, patch) : std::string();
+  }
+
+  std::string judge_lists(const Patch& patch) const {
+    if (patch.faces.empty()) return "no faces";
+    if (!std::is_sorted(patch.faces.begin(), patch.faces.end())) return "faces not ascending";
+    std::set<std::uint32_t> expected;
+    for (const std::uint32_t f : patch.faces)
+      expected.insert(mesh_.faces[f].begin(), mesh_.faces[f].end());
+    const std::set<std::uint32_t> listed(patch.vertices.begin(), patch.vertices.end());
+    if (listed != expected || listed.size() != patch.vertices.size()) return "wrong vertices";
+    for (std::size_t i = 0; i < patch.hull.vertices.size(); ++i)
+      if (patch.hull.vertices[i] != i) return "hull vertices do not come first";
+    const auto others =
+        patch.vertices.begin() + static_cast<std::ptrdiff_t>(patch.hull.vertices.size());
+    if (!std::is_sorted(patch.vertices.begin(), others) ||
+        !std::is_sorted(others, patch.vertices.end()))
+      return "vertices not ascending";
+    return {};
+  }
+
+  std::string judge_flags(const Patch& patch) const {
+    const std::uint32_t component = report_.face_component[patch.faces[0]];
+    const bool back_open = report_.component_closed[component] == 0 || unsound_.contains(component);
+    if (patch.back_open != back_open) return "wrong back_open";
+    if (back_open && patch.faces.size() > image::kMaxOpenPatchTriangles)
+      return "too large for its back";
+    for (const std::uint32_t f : patch.faces)
+      if (crossing_.contains(f) && patch.faces.size() > 1) return "a crossing face has company";
+    if (patch.all_real != patch.virtual_faces.empty()) return "wrong all_real";
+    return {};
+  }
+
+  /// Constraint 1, and that the faces hang together.
+  std::string judge_edges(const Patch& patch) const {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> face_at;
+    for (const std::uint32_t f : patch.faces)
+      for (std::size_t i = 0; i < 3; ++i)
+        face_at[{mesh_.faces[f][i], mesh_.faces[f][(i + 1) % 3]}] = f;
+    std::map<std::uint32_t, std::vector<std::uint32_t>> next_to;
+    for (const auto& [edge, f] : face_at) {
+      const auto other = face_at.find({edge.second, edge.first});
+      if (other == face_at.end()) continue;
+      next_to[f].push_back(other->second);
+      if (!has_area(f)) continue;
+      for (const std::uint32_t v : mesh_.faces[other->second])
+        if (side_of_face(f, v) > 0) return "reflex edge inside";
+    }
+    std::set<std::uint32_t> reached = {patch.faces[0]};
+    std::vector<std::uint32_t> stack = {patch.faces[0]};
+    while (!stack.empty()) {
+      const std::uint32_t f = stack.back();
+      stack.pop_back();
+      for (const std::uint32_t g : next_to[f])
+        if (reached.insert(g).second) stack.push_back(g);
+    }
+    return reached.size() == patch.faces.size() ? "" : "not connected";
+  }
+
+  /// Constraint 2.
+  std::string judge_planes(const Patch& patch) const {
+    for (const std::uint32_t f : patch.faces)
+      if (has_area(f))
+        for (const std::uint32_t v : patch.vertices)
+          if (side_of_face(f, v) > 0) return "a vertex sees a face";
+    return {};
+  }
+
+  bool covered(const Patch& patch, Vec p) const {
+    return std::any_of(patch.faces.begin(), patch.faces.end(), [&](std::uint32_t f) {
+      return distance(p, corner(f, 0), corner(f, 1), corner(f, 2)) < 2 * kShrink;
+    });
+  }
+
+  Vec sample(Vec a, Vec b, Vec c) {
+    std::uniform_real_distribution<double> share(0, 1);
+    long double u = share(random_);
+    long double v = share(random_);
+    if (u + v > 1) {
+      u = 1 - u;
+      v = 1 - v;
+    }
+    return a + u * (b - a) + v * (c - a);
+  }
+
+  /// Hull faces that are not virtual are covered by the patch; of a facet with virtual faces some
+  /// part is not.
+  std::string judge_cover(const Patch& patch) {
+    const std::set<Triple> hidden(patch.virtual_faces.begin(), patch.virtual_faces.end());
+    std::set<Triple> unknown = hidden;
+    for (const Triple& face : patch.hull.faces) {
+      unknown.erase(face);
+      if (hidden.contains(face)) continue;
+      for (int i = 0; i < 6; ++i)
+        if (!covered(patch, sample(points_[face[0]], points_[face[1]], points_[face[2]])))
+          return "a face called real is not covered";
+    }
+    if (!unknown.empty()) return "a virtual face is not of the hull";
+    if (patch.hull.dimension != 3) return hidden.empty() ? "" : "a flat patch has virtual faces";
+    for (const Triple& face : hidden)
+      if (!partly_open(patch, face)) return "a face called virtual is covered";
+    return {};
+  }
+
+  bool partly_open(const Patch& patch, const Triple& face) {
+    for (const Triple& other : patch.hull.faces) {
+      const auto point = [&](std::uint32_t v) { return at(patch.vertices[v]); };
+      const bool same_plane = std::all_of(other.begin(), other.end(), [&](std::uint32_t v) {
+        return exact_side(point(face[0]), point(face[1]), point(face[2]), point(v)) == 0;
+      });
+      for (int i = 0; same_plane && i < 40; ++i) {
+        const Vec p = sample(points_[other[0]], points_[other[1]], points_[other[2]]);
+        const Plane plane = plane_of(points_[face[0]], points_[face[1]], points_[face[2]]);
+        if (!covered_in_plane(patch, plane, p)) return true;
+      }
+    }
+    return false;
+  }
+
+  bool covered_in_plane(const Patch& patch, const Plane& plane, Vec p) const {
+    return std::any_of(patch.faces.begin(), patch.faces.end(), [&](std::uint32_t f) {
+      for (std::size_t i = 0; i < 3; ++i)
+        if (std::abs(dot(plane.normal, corner(f, i)) - plane.offset) > 1e-13L) return false;
+      return distance(p, corner(f, 0), corner(f, 1), corner(f, 2)) < 1e-12L;
+    });
+  }
+
+  /// Constraint 3.
+  std::string judge_interior(std::uint32_t p, const Patch& patch) {
+    std::vector<Plane> planes;
+    long double width = std::numeric_limits<long double>::max();
+    for (const Triple& face : patch.hull.faces) {
+      planes.push_back(plane_of(points_[face[0]], points_[face[1]], points_[face[2]]));
+      long double depth = 0;
+      for (const Vec& v : points_)
+        depth = std::max(depth, planes.back().offset - dot(planes.back().normal, v));
+      width = std::min(width, depth);
+    }
+    if (width < 2 * kShrink) return judge_thin(patch);
+    std::array<float, 3> low, high;
+    low.fill(std::numeric_limits<float>::infinity());
+    high.fill(-std::numeric_limits<float>::infinity());
+    for (const std::uint32_t v : patch.vertices)
+      for (std::size_t i = 0; i < 3; ++i) {
+        low[i] = std::min(low[i], at(v)[i]);
+        high[i] = std::max(high[i], at(v)[i]);
+      }
+    auto f = std::lower_bound(by_x_.begin(), by_x_.end(), low[0] - widest_,
+                              [&](std::uint32_t face, float x) { return low_x(face) < x; });
+    for (; f != by_x_.end() && low_x(*f) <= high[0]; ++f) {
+      bool apart = patch_of_[*f] == p;
+      for (std::size_t i = 0; i < 3; ++i)
+        apart = apart || extent(*f, i).first > high[i] || extent(*f, i).second < low[i];
+      if (!apart && enters(*f, planes)) return "face " + std::to_string(*f) + " enters the hull";
+    }
+    return {};
+  }
+
+  bool enters(std::uint32_t f, const std::vector<Plane>& planes) const {
+    std::vector<Vec> polygon = {corner(f, 0), corner(f, 1), corner(f, 2)};
+    for (const Plane& plane : planes) {
+      std::vector<Vec> kept;
+      const auto above = [&](Vec v) {
+        return dot(plane.normal, v) - plane.offset + 1.001L * kShrink;
+      };
+      for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Vec a = polygon[i];
+        const Vec b = polygon[(i + 1) % polygon.size()];
+        if (above(a) <= 0) kept.push_back(a);
+        if ((above(a) > 0) != (above(b) > 0))
+          kept.push_back(a + (above(a) / (above(a) - above(b))) * (b - a));
+      }
+      polygon = kept;
+      if (polygon.empty()) return false;
+    }
+    return true;
+  }
+
+  /// A hull without interior: every mix of its vertices is near the patch.
+  std::string judge_thin(const Patch& patch) {
+    std::uniform_real_distribution<double> share(0, 1);
+    for (int i = 0; i < 200; ++i) {
+      Vec p;
+      long double total = 0;
+      for (std::size_t v = 0; v < patch.hull.vertices.size(); ++v) {
+        const long double w = std::pow(static_cast<long double>(share(random_)), 8.0L);
+        p = p + w * points_[v];
+        total += w;
+      }
+      p = (1 / total) * p;
+      const bool near = std::any_of(patch.faces.begin(), patch.faces.end(), [&](std::uint32_t f) {
+        return distance(p, corner(f, 0), corner(f, 1), corner(f, 2)) < 6 * kShrink;
+      });
+      if (!near) return "a thin hull leaves its patch";
+    }
+    return {};
+  }
+
+  const NormalMesh& mesh_;
+  const bake::CheckReport& report_;
+  const std::vector<Patch>& patches_;
+  std::vector<std::uint32_t> patch_of_, by_x_;
+  float widest_ = 0;
+  std::vector<char> area_;
+  std::set<std::size_t> crossing_;
+  std::set<std::uint32_t> unsound_;
+  std::vector<Vec> points_;  // of the patch at hand
+  std::mt19937 random_{1};
+};
+
+std::string judge_solid(std::span<const PointF> points, const HullMesh& hull) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Triple> edges;
+  for (const Triple& f : hull.faces)
+    for (std::size_t i = 0; i < 3; ++i)
+      if (!edges.try_emplace({f[i], f[(i + 1) % 3]}, f).second) return "an edge occurs twice";
+  if (hull.vertices.size() + hull.faces.size() != edges.size() / 2 + 2) return "no sphere";
+  const auto point = [&](std::uint32_t v) { return points[hull.vertices[v]]; };
+  for (const auto& [edge, face] : edges)
+    if (!edges.contains({edge.second, edge.first})) return "an edge has one face";
+  std::vector<std::vector<Triple>> planes_at(hull.vertices.size());
+  for (const Triple& f : hull.faces) {
+    if (in_line(point(f[0]), point(f[1]), point(f[2]))) return "a face without area";
+    for (const PointF& p : points)
+      if (exact_side(point(f[0]), point(f[1]), point(f[2]), p) > 0) return "a point is outside";
+    for (const std::uint32_t v : f) {
+      const bool known =
+          std::any_of(planes_at[v].begin(), planes_at[v].end(), [&](const Triple& g) {
+            return std::all_of(g.begin(), g.end(), [&](std::uint32_t w) {
+              return exact_side(point(f[0]), point(f[1]), point(f[2]), point(w)) == 0;
+            });
+          });
+      if (!known) planes_at[v].push_back(f);
+    }
+  }
+  for (const auto& planes : planes_at)
+    if (planes.size() < 3) return "a vertex is not extreme";
+  return {};
+}
+
+std::string judge_flat(std::span<const PointF> points, const HullMesh& hull) {
+  const std::size_t n = hull.vertices.size();
+  if (n < 3 || hull.faces.size() != 2 * (n - 2)) return "not two sides of a polygon";
+  const std::set<Triple> faces(hull.faces.begin(), hull.faces.end());
+  const auto point = [&](std::uint32_t v) { return points[hull.vertices[v]]; };
+  long double up = 0;
+  long double total = 0;
+  const Triple& base = hull.faces.front();
+  const Plane plane = plane_of(vec(point(base[0])), vec(point(base[1])), vec(point(base[2])));
+  for (const Triple& f : hull.faces) {
+    if (!faces.contains({f[0], f[2], f[1]})) return "a face has no other side";
+    for (const PointF& p : points)
+      if (exact_side(point(f[0]), point(f[1]), point(f[2]), p) != 0) return "not flat";
+    const Vec a = vec(point(f[0]));
+    const Vec area = cross(vec(point(f[1])) - a, vec(point(f[2])) - a);
+    total += length(area);
+    up += dot(area, plane.normal);
+  }
+  if (std::abs(up) > 1e-12L * total) return "the sides differ";
+  // A vertex is extreme where no triangle of three other vertices, or segment of two, holds it.
+  for (std::uint32_t v = 0; v < n; ++v)
+    for (std::uint32_t a = 0; a < n; ++a)
+      for (std::uint32_t b = a + 1; b < n; ++b)
+        if (v != a && v != b && in_line(point(a), point(v), point(b)) &&
+            std::min(point(a), point(b)) < point(v) && point(v) < std::max(point(a), point(b)))
+          return "a vertex is not extreme";
+  for (const PointF& p : points) {
+    const bool inside = std::any_of(hull.faces.begin(), hull.faces.end(), [&](const Triple& f) {
+      return distance(vec(p), vec(point(f[0])), vec(point(f[1])), vec(point(f[2]))) < 1e-15L;
+    });
+    if (!inside) return "a point is outside";
+  }
+  return {};
+}
+
+}  // namespace
+
+int exact_side(const PointF& a, const PointF& b, const PointF& c, const PointF& d) {
+  const Vec n = cross(vec(b) - vec(a), vec(c) - vec(a));
+  const long double rough = dot(n, vec(d) - vec(a));
+  if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;
+  const Vec u = vec(b) - vec(a);
+  const Vec v = vec(c) - vec(a);
+  const long double scale = length(u) * length(v) * length(vec(d) - vec(a));
+  if (std::abs(rough) > 1e-15L * scale) return rough > 0 ? 1 : -1;
+  const auto difference = [](const PointF& p, const PointF& q, std::size_t i) {
+    return exact(p[i]) - exact(q[i]);
+  };
+  Exact sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const std::size_t k = (i + 2) % 3;
+    sum += (difference(b, a, j) * difference(c, a, k) - difference(b, a, k) * difference(c, a, j)) *
+           difference(d, a, i);
+  }
+  return sum > 0 ? 1 : sum < 0 ? -1 : 0;
+}
+
+bool in_line(const PointF& a, const PointF& b, const PointF& c) {
+  const Vec u = vec(b) - vec(a);
+  const Vec v = vec(c) - vec(a);
+  if (length(cross(u, v)) > 1e-15L * length(u) * length(v)) return false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const Exact area = (exact(b[i]) - exact(a[i])) * (exact(c[j]) - exact(a[j])) -
+                       (exact(b[j]) - exact(a[j])) * (exact(c[i]) - exact(a[i]));
+    if (area != 0) return false;
+  }
+  return true;
+}
+
+std::string judge_hull(std::span<const PointF> points, const HullMesh& hull) {
+  if (!std::is_sorted(hull.vertices.begin(), hull.vertices.end())) return "hull order";
+  if (!std::is_sorted(hull.faces.begin(), hull.faces.end())) return "hull face order";
+  for (const Triple& f : hull.faces)
+    if (f[0] >= f[1] || f[0] >= f[2]) return "hull face start";
+  switch (hull.dimension) {
+    case 3:
+      return judge_solid(points, hull);
+    case 2:
+      return judge_flat(points, hull);
+    case 1: {
+      if (hull.vertices.size() != 2 || !hull.faces.empty()) return "not a segment";
+      const PointF& a = points[hull.vertices[0]];
+      const PointF& b = points[hull.vertices[1]];
+      for (const PointF& p : points)
+        if (!in_line(a, b, p) || p < std::min(a, b) || std::max(a, b) < p) return "off the segment";
+      return a == b ? "no segment" : "";
+    }
+    default:
+      for (const PointF& p : points)
+        if (p != points[hull.vertices.at(0)]) return "more than a point";
+      return hull.vertices.size() == 1 && hull.faces.empty() ? "" : "not a point";
+  }
+}
+
+std::string judge_patches(const NormalMesh& mesh, const bake::CheckReport& report,
+                          const std::vector<Patch>& patches) {
+  return Judge(mesh, report, patches).run();
+}
+
+}  // namespace palpate::test
