@@ -127,7 +127,10 @@ constexpr Key<PairNames> kPairKeys[] = {
 constexpr Table<Scene> kTables[] = {
     {"[engine]", kEngineKeys, "How contacts are found."},
     {"[force]", kForceKeys, "How contacts become a force."},
-    {"[limits]", kLimitKeys, "Capacities. More room takes more memory, never more time."},
+    {"[limits]", kLimitKeys,
+     "Capacities. More room takes more memory, never more time. Where nodes or contacts are used "
+     "up a tick still answers, "
+     "truncated; a replay without a budget takes more of both, up to `max_memory_MB`."},
     {"[run]", kRunKeys, "The real-time loop."},
     {"[mock]", kMockKeys,
      "The mock device: a simulated hand, a mass held to a path by a spring and a damper."},

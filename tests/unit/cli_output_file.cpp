@@ -47,6 +47,15 @@ TEST_F(OutputFiles, Two_at_a_time_have_their_own_temporaries) {
   EXPECT_EQ(folder_.files(), 2u);
 }
 
+TEST_F(OutputFiles, Appended_parts_make_one_file) {
+  OutputFile file(at("x"));
+  file.append("one ");
+  file.append("two");
+  EXPECT_FALSE(std::filesystem::exists(at("x")));
+  file.commit();
+  EXPECT_EQ(test::read_file(at("x")), "one two");
+}
+
 TEST_F(OutputFiles, Link_stays_and_its_file_is_replaced) {
   folder_.write("x", "old");
   std::filesystem::create_symlink("x", at("link"));

@@ -166,6 +166,20 @@ TEST_F(Replay, Scene_budget_counts_unless_exact) {
   EXPECT_EQ(rows(test::read_file(at("ticks.csv"))).back()[14], "0");
 }
 
+TEST_F(Replay, Room_grows_where_nothing_else_is_limited) {
+  write_scene("", "[limits]\nnodes = 1\ncontacts = 1\n");
+  ASSERT_EQ(replay({"--exact"}).status, 0);
+  const auto grown = rows(test::read_file(at("ticks.csv"))).back();
+  write_scene("");
+  ASSERT_EQ(replay({"--exact"}).status, 0);
+  const auto ample = rows(test::read_file(at("ticks.csv"))).back();
+  for (const int same : {2, 3, 4, 8, 9, 10, 14})
+    EXPECT_EQ(grown[std::size_t(same)], ample[std::size_t(same)]);
+  write_scene("", "[limits]\nnodes = 1\ncontacts = 1\n");
+  ASSERT_EQ(replay({"--budget-units", "1000"}).status, 0);
+  EXPECT_EQ(rows(test::read_file(at("ticks.csv"))).back()[14], "1");
+}
+
 TEST_F(Replay, Summary_is_a_line_or_one_json_object_or_nothing) {
   const std::string line = replay().out;
   EXPECT_EQ(line.find("6 ticks: "), 0u) << line;

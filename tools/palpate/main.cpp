@@ -85,6 +85,10 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", version());
   app.require_subcommand(1);
   for (const auto add : kCommands) add(app);
+  for (CLI::App* command : app.get_subcommands({})) {  // one that wrote its own keeps it above ours
+    const std::string footer = command->get_footer();
+    if (footer != kFooter) command->footer(footer + "\n\n" + kFooter);
+  }
   try {
     app.parse(argc, argv);
     return exit_status();

@@ -21,22 +21,6 @@ namespace fs = std::filesystem;
                 "give a place that exists, is writable and has room");
 }
 
-/// Closes on every way out; close() reports what a delayed write may still say.
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int get() const { return fd_; }
-  [[nodiscard]] bool close() { return ::close(std::exchange(fd_, -1)) == 0; }
-
- private:
-  int fd_;
-};
-
 [[nodiscard]] bool write_all(int fd, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t n = ::write(fd, bytes.data(), bytes.size());
@@ -57,50 +41,58 @@ int create_temporary(const fs::path& folder, fs::path& out_path) {
   }
 }
 
+/// The new name survives a power cut only once the folder is on the disk. Not every file system can
+/// sync a folder: the file is whole either way.
+void sync_folder(const fs::path& folder) {
+  const int fd = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return;
+  ::fsync(fd);
+  ::close(fd);
+}
+
 }  // namespace
 
-OutputFile::OutputFile(fs::path target, std::span<const std::byte> bytes)
-    : target_(std::move(target)), bytes_(bytes) {
+OutputFile::OutputFile(fs::path target) : target_(std::move(target)) {
   std::error_code ignored;
   const fs::file_status status = fs::status(target_, ignored);
   if (fs::is_directory(status)) fail("cannot write the file", target_, EISDIR);
-  if (fs::exists(status) && !fs::is_regular_file(status)) return;
-  if (fs::is_symlink(fs::symlink_status(target_, ignored))) {
-    target_ = fs::weakly_canonical(target_);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    file_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+  } else {
+    if (fs::is_symlink(fs::symlink_status(target_, ignored))) {
+      target_ = fs::weakly_canonical(target_);
+    }
+    file_ = create_temporary(target_.parent_path(), temporary_);
   }
+  if (file_ < 0) fail("cannot create the file", target_, errno);
+}
 
-  fs::path temporary;
-  Descriptor file(create_temporary(target_.parent_path(), temporary));
-  if (file.get() < 0) fail("cannot create the file", target_, errno);
-  if (!write_all(file.get(), bytes_) || ::fsync(file.get()) != 0 || !file.close()) {
-    const int error = errno;
-    ::unlink(temporary.c_str());
-    fail("cannot write the file", target_, error);
-  }
-  temporary_ = std::move(temporary);
+OutputFile::OutputFile(fs::path target, std::span<const std::byte> bytes)
+    : OutputFile(std::move(target)) {
+  append(bytes);
 }
 
 OutputFile::~OutputFile() {
+  if (file_ >= 0) ::close(file_);
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
+void OutputFile::append(std::span<const std::byte> bytes) {
+  if (!write_all(file_, bytes)) fail("cannot write the file", target_, errno);
+}
+
 void OutputFile::commit() {
-  if (temporary_.empty()) {
-    Descriptor file(::open(target_.c_str(), O_WRONLY | O_CLOEXEC));
-    if (file.get() < 0 || !write_all(file.get(), bytes_) || !file.close()) {
-      fail("cannot write the file", target_, errno);
-    }
-    return;
+  const bool synced = temporary_.empty() || ::fsync(file_) == 0;
+  // Some file systems report a failed write only here.
+  if (!synced || ::close(std::exchange(file_, -1)) != 0) {
+    fail("cannot write the file", target_, errno);
   }
+  if (temporary_.empty()) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
     fail("cannot rename the file", target_, errno);
   }
   temporary_.clear();
-  // The new name survives a power cut only once the folder is on the disk. Not every file system
-  // can sync a folder: the file is whole either way.
-  const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
-  const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (directory.get() >= 0) ::fsync(directory.get());
+  sync_folder(target_.parent_path());
 }
 
 }  // namespace palpate::cli

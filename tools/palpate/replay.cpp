@@ -90,24 +90,60 @@ void print_text(const Recording& recording, const Summary& s) {
       double(s.max_ns) * 1e-3, s.contacts_mean, s.force_mean_N, s.truncated);
 }
 
-/// Both files or none.
-void write(const Recording& recording, const Arguments& a) {
-  const std::string ticks = ticks_csv(recording.ticks);
-  OutputFile ticks_file(a.ticks, std::as_bytes(std::span(ticks)));
-  if (!a.contacts.empty()) {
-    const std::string contacts = contacts_csv(recording.contacts);
-    OutputFile(a.contacts, std::as_bytes(std::span(contacts))).commit();
+/// CONTACTS.csv: rows are kept as they are while they are few, so that making text of them does not
+/// disturb the ticks that are timed, and go to the file once they are many.
+class ContactTable {
+ public:
+  explicit ContactTable(std::string file) : name_(std::move(file)) {
+    if (!name_.empty()) rows_.reserve(kRows);
   }
-  ticks_file.commit();
-}
+
+  void add(std::size_t tick, std::span<const Contact> contacts) {
+    for (const Contact& contact : contacts) rows_.push_back({tick, contact});
+    if (rows_.size() >= kRows) spill();
+  }
+
+  /// Nothing where no file was asked for.
+  void commit() {
+    if (name_.empty()) return;
+    spill();
+    file_->commit();
+  }
+
+ private:
+  static constexpr std::size_t kRows = std::size_t(1) << 18;  // about 50 MB
+
+  void spill() {
+    if (!file_) {
+      file_.emplace(name_);
+      file_->append(std::string(kContactsHeader) + "\n");
+    }
+    file_->append(contact_rows(rows_));
+    rows_.clear();
+  }
+
+  std::string name_;
+  std::vector<ContactRow> rows_;
+  std::optional<OutputFile> file_;
+};
 
 void run(const Arguments& a) {
   const config::Scene scene = load(a);
   const PoseTrack track = read_poses(a.poses, scene);
   const bake::Progress show = progress(a.quiet);
-  const Recording recording =
-      replay(scene, track, a.options, [&](double done) { show("replay", done); });
-  write(recording, a);
+  ContactTable contacts(a.contacts);
+  ReplayListeners listeners;
+  listeners.progress = [&](double done) { show("replay", done); };
+  if (!a.contacts.empty()) {
+    listeners.contacts = [&](std::size_t tick, std::span<const Contact> found) {
+      contacts.add(tick, found);
+    };
+  }
+  const Recording recording = replay(scene, track, a.options, listeners);
+  const std::string ticks = ticks_csv(recording.ticks);
+  OutputFile ticks_file(a.ticks, std::as_bytes(std::span(ticks)));
+  contacts.commit();  // both files or none
+  ticks_file.commit();
   const Summary summary = summarise(recording.ticks);
   if (a.json) {
     print_json(recording, summary);
@@ -151,10 +187,7 @@ void add_replay(CLI::App& app) {
       ->check(number_between(1, 1000));
   command->add_flag("--json", a->json, "print the summary as one JSON object");
   command->add_flag("--quiet", a->quiet, "print no progress and no summary");
-  command->callback([a] {
-    a->options.keep_contacts = !a->contacts.empty();
-    run(*a);
-  });
+  command->callback([a] { run(*a); });
 }
 
 }  // namespace palpate::cli

@@ -51,8 +51,8 @@ std::string ticks_csv(std::span<const TickRow> rows) {
   return out;
 }
 
-std::string contacts_csv(std::span<const ContactRow> rows) {
-  std::string out = std::string(kContactsHeader) + "\n";
+std::string contact_rows(std::span<const ContactRow> rows) {
+  std::string out;
   for (const ContactRow& r : rows) {
     const Contact& c = r.contact;
     Row(out) << r.tick << c.pair << c.point_a_m << c.point_b_m << c.normal << c.distance_m

@@ -35,8 +35,12 @@ struct ContactRow {
   Contact contact;
 };
 
-/// Header and rows, LF line ends. Numbers are the shortest text that reads back as the same double.
+// Rows as text, LF line ends. Numbers are the shortest text that reads back as the same double.
+
+/// The whole table, with its header.
 std::string ticks_csv(std::span<const TickRow> rows);
-std::string contacts_csv(std::span<const ContactRow> rows);
+
+/// Rows of a table that is too large to be held.
+std::string contact_rows(std::span<const ContactRow> rows);
 
 }  // namespace palpate::cli

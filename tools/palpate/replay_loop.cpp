@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/palpate/replay_loop.hpp"
+
 #include <algorithm>
 #include <string>
 
 #include "hal/clock.hpp"
 #include "tools/palpate/command.hpp"
-#include "tools/palpate/replay_loop.hpp"
 #include "tools/palpate/scene_engine.hpp"
 
 namespace palpate::cli {
@@ -15,7 +16,10 @@ constexpr std::size_t kShowEvery = 64;  // ticks
 class Replay {
  public:
   Replay(const config::Scene& scene, const PoseTrack& track, const ReplayOptions& options)
-      : scene_(scene), track_(track), keep_contacts_(options.keep_contacts), engine_(scene) {
+      : scene_(scene),
+        track_(track),
+        engine_(scene),
+        unlimited_(!options.budget_units && !scene.budget_us) {
     if (options.budget_units) budget_.units = *options.budget_units;
     if (scene.budget_us) {
       budget_ns_ = static_cast<std::uint64_t>(*scene.budget_us * 1e3);
@@ -24,45 +28,64 @@ class Replay {
     }
   }
 
-  Recording run_once(const std::function<void(double)>& show) {
-    Recording out;
-    out.image_bytes = engine_.image_bytes();
-    out.engine_bytes = engine_.engine_bytes();
-    out.ticks.reserve(track_.ticks.size());
-    if (keep_contacts_) out.contacts.reserve(scene_.limits.contacts);
+  std::vector<TickRow> run_once(const ReplayListeners& listeners) {
+    std::vector<TickRow> rows;
+    rows.reserve(track_.ticks.size());
     std::vector<Pose> poses = engine_.start_poses();
     engine_.restart();
     for (std::size_t i = 0; i < track_.ticks.size(); ++i) {
       track_.apply(i, poses);
-      tick_once(i, poses, out);
-      if (i % kShowEvery == 0) show(double(i) / double(track_.ticks.size()));
+      TickRow& row = rows.emplace_back();
+      row.t_s = track_.ticks[i].t_s;
+      const TickResult result = complete_tick(i, poses, row.time_ns);
+      note(result, row);
+      if (listeners.contacts) listeners.contacts(i, result.contacts);
+      if (listeners.progress && i % kShowEvery == 0) {
+        listeners.progress(double(i) / double(track_.ticks.size()));
+      }
     }
-    return out;
+    return rows;
   }
 
+  [[nodiscard]] const SceneEngine& engine() const { return engine_; }
+
  private:
-  void tick_once(std::size_t i, std::span<const Pose> poses, Recording& out) {
-    TickResult r;
+  TickResult complete_tick(std::size_t i, std::span<const Pose> poses, std::uint64_t& out_ns) {
+    TickResult result = timed_tick(i, poses, out_ns);
+    while (unlimited_ && result.certificate.truncated_by_memory && engine_.grow()) {
+      result = timed_tick(i, poses, out_ns);
+    }
+    return result;
+  }
+
+  TickResult timed_tick(std::size_t i, std::span<const Pose> poses, std::uint64_t& out_ns) {
+    TickResult result;
     const std::uint64_t start_ns = clock_.now_ns();
     budget_.deadline_ns = start_ns + budget_ns_;
-    const Status status = tick(engine_.engine(), poses, budget_, r);
-    const std::uint64_t end_ns = clock_.now_ns();
+    const Status status = tick(engine_.engine(), poses, budget_, result);
+    out_ns = clock_.now_ns() - start_ns;
     if (status != Status::ok) {
       throw Failure(kOther, std::string("the engine failed (") + describe(status) + ")",
                     scene_.file.string() + ", tick " + std::to_string(i),
                     "check the poses of this tick");
     }
-    out.ticks.push_back({track_.ticks[i].t_s, r.wrench, r.contacts.size(), r.clusters,
-                         r.min_distance_m, r.front_nodes, r.queries, end_ns - start_ns,
-                         r.certificate});
-    if (!keep_contacts_) return;
-    for (const Contact& contact : r.contacts) out.contacts.push_back({i, contact});
+    return result;
+  }
+
+  static void note(const TickResult& result, TickRow& out) {
+    out.wrench = result.wrench;
+    out.contacts = result.contacts.size();
+    out.clusters = result.clusters;
+    out.min_distance_m = result.min_distance_m;
+    out.front_nodes = result.front_nodes;
+    out.queries = result.queries;
+    out.certificate = result.certificate;
   }
 
   const config::Scene& scene_;
   const PoseTrack& track_;
-  bool keep_contacts_;
   SceneEngine engine_;
+  bool unlimited_;
   hal::MonotonicClock clock_;
   Budget budget_;
   std::uint64_t budget_ns_ = 0;
@@ -71,21 +94,27 @@ class Replay {
 }  // namespace
 
 Recording replay(const config::Scene& scene, const PoseTrack& track, const ReplayOptions& options,
-                 const std::function<void(double done)>& show) {
+                 const ReplayListeners& listeners) {
   Replay loop(scene, track, options);
-  Recording last;
+  Recording out;
   std::vector<std::vector<std::uint64_t>> times_of(track.ticks.size());
   for (unsigned k = 0; k < options.repeat; ++k) {
-    last = loop.run_once([&](double done) { show((k + done) / options.repeat); });
-    for (std::size_t i = 0; i < last.ticks.size(); ++i)
-      times_of[i].push_back(last.ticks[i].time_ns);
+    ReplayListeners now;
+    if (listeners.progress) {
+      now.progress = [&](double done) { listeners.progress((k + done) / options.repeat); };
+    }
+    if (k + 1 == options.repeat) now.contacts = listeners.contacts;
+    out.ticks = loop.run_once(now);
+    for (std::size_t i = 0; i < out.ticks.size(); ++i) times_of[i].push_back(out.ticks[i].time_ns);
   }
-  for (std::size_t i = 0; i < last.ticks.size(); ++i) {
+  for (std::size_t i = 0; i < out.ticks.size(); ++i) {
     const auto middle = times_of[i].begin() + std::ptrdiff_t(times_of[i].size() / 2);
     std::nth_element(times_of[i].begin(), middle, times_of[i].end());
-    last.ticks[i].time_ns = *middle;
+    out.ticks[i].time_ns = *middle;
   }
-  return last;
+  out.image_bytes = loop.engine().image_bytes();
+  out.engine_bytes = loop.engine().engine_bytes();
+  return out;
 }
 
 }  // namespace palpate::cli

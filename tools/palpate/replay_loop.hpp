@@ -2,9 +2,11 @@
 // Runs a scene's engine over recorded poses.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "config/scene.hpp"
@@ -16,23 +18,31 @@ namespace palpate::cli {
 struct ReplayOptions {
   std::optional<std::uint64_t> budget_units;  ///< beside the scene's budget_us; absent: unlimited
   unsigned repeat = 1;                        ///< >= 1
-  bool keep_contacts = false;
+};
+
+/// What a replay tells while it runs; each may be empty.
+struct ReplayListeners {
+  std::function<void(double done)> progress;
+  /// The contacts of each tick of the last repetition, in order; called between ticks.
+  std::function<void(std::size_t tick, std::span<const Contact>)> contacts;
 };
 
 /// What the last repetition gave; times are the median over all repetitions, tick by tick.
 struct Recording {
   std::vector<TickRow> ticks;
-  std::vector<ContactRow> contacts;  ///< empty unless kept
   std::size_t image_bytes = 0;
   std::size_t engine_bytes = 0;
 };
 
 /// Replays the track options.repeat times, each with a new engine, so that all repetitions do the
 /// same work. Only the engine's tick lies between the two readings of the clock: nothing is
-/// formatted or written in the loop.
-/// @param show  called now and then with the share done
-/// Throws Failure as SceneEngine does, and kOther where a tick fails.
+/// formatted or written there.
+///
+/// Where neither time nor units are limited the answer shall not be cut for want of memory either:
+/// a tick that runs out of nodes or contacts is done again by an engine with twice the room, up to
+/// the scene's max_memory_MB. Throws Failure as SceneEngine does, kOther where a tick fails, and
+/// what the listeners throw.
 Recording replay(const config::Scene& scene, const PoseTrack& track, const ReplayOptions& options,
-                 const std::function<void(double done)>& show);
+                 const ReplayListeners& listeners);
 
 }  // namespace palpate::cli

@@ -9,23 +9,31 @@
 
 namespace palpate::cli {
 
-SceneEngine::SceneEngine(const config::Scene& scene) : config_(scene) {
+SceneEngine::SceneEngine(const config::Scene& scene) : config_(scene), limits_(scene.limits) {
   if (config_.engine == config::EngineKind::regions) {
     throw Failure(kUsage, "this build has no regions engine", config_.file.string(),
                   "use engine = \"levels\" or --engine levels");
   }
   open_images();
-  allocate();
+  const std::size_t bytes = required_bytes(scene_, limits_);
+  if (bytes == 0) {
+    throw Failure(kUsage, "the engine cannot work within these [limits]", config_.file.string(),
+                  "raise or remove nodes, contacts and clusters");
+  }
+  require_memory(image_bytes_ + bytes);
+  allocate(bytes);
   restart();
 }
 
+bool SceneEngine::fits(std::uintmax_t bytes) const {
+  return static_cast<double>(bytes) * 1e-6 <= config_.max_memory_MB;
+}
+
 void SceneEngine::require_memory(std::uintmax_t bytes) const {
-  const double needed_MB = static_cast<double>(bytes) * 1e-6;
-  if (needed_MB <= config_.max_memory_MB) return;
-  throw Failure(
-      kRefused,
-      "the scene needs " + config::to_text(needed_MB) + " MB of memory, more than it allows",
-      config_.file.string(), "raise max_memory_MB in [limits] or use smaller images");
+  if (fits(bytes)) return;
+  const std::string needed_MB = config::to_text(static_cast<double>(bytes) * 1e-6);
+  throw Failure(kRefused, "the scene needs " + needed_MB + " MB of memory, more than it allows",
+                config_.file.string(), "raise max_memory_MB in [limits] or use smaller images");
 }
 
 void SceneEngine::open_images() {
@@ -45,19 +53,27 @@ void SceneEngine::open_images() {
   scene_ = {bodies_, config_.pairs, config_.tool};
 }
 
-void SceneEngine::allocate() {
-  engine_bytes_ = required_bytes(scene_, config_.limits);
-  if (engine_bytes_ == 0) {
-    throw Failure(kUsage, "the engine cannot work within these [limits]", config_.file.string(),
-                  "raise or remove nodes, contacts and clusters");
-  }
-  require_memory(image_bytes_ + engine_bytes_);
-  memory_.reset(new (std::align_val_t(image::kAlignment)) std::byte[engine_bytes_]);
+void SceneEngine::allocate(std::size_t bytes) {
+  memory_.reset();  // first: old and new need not fit together
+  memory_.reset(new (std::align_val_t(image::kAlignment)) std::byte[bytes]);
+  engine_bytes_ = bytes;
+}
+
+bool SceneEngine::grow() {
+  Limits larger = limits_;
+  larger.nodes *= 2;
+  larger.contacts *= 2;
+  const std::size_t bytes = larger.nodes > limits_.nodes ? required_bytes(scene_, larger) : 0;
+  if (bytes == 0 || !fits(image_bytes_ + bytes)) return false;
+  limits_ = larger;
+  allocate(bytes);
+  restart();
+  return true;
 }
 
 void SceneEngine::restart() {
   const std::span<std::byte> memory(memory_.get(), engine_bytes_);
-  const Status status = create(scene_, config_.settings, config_.limits, memory, engine_);
+  const Status status = create(scene_, config_.settings, limits_, memory, engine_);
   if (status == Status::ok) return;
   const Exit code = status == Status::image_missing_section || status == Status::image_over_limit
                         ? kRefused

@@ -32,6 +32,10 @@ class SceneEngine {
   /// A new engine on the same memory, as if nothing had ever ticked.
   void restart();
 
+  /// Makes room for twice as many nodes and contacts, in a new engine. False, and nothing changed,
+  /// where that is more than the scene's max_memory_MB or than an engine can use.
+  [[nodiscard]] bool grow();
+
   /// [bodies] where the scene puts them.
   [[nodiscard]] std::vector<Pose> start_poses() const;
 
@@ -39,9 +43,10 @@ class SceneEngine {
   [[nodiscard]] std::size_t engine_bytes() const { return engine_bytes_; }
 
  private:
+  [[nodiscard]] bool fits(std::uintmax_t bytes) const;
   void require_memory(std::uintmax_t bytes) const;
   void open_images();
-  void allocate();
+  void allocate(std::size_t bytes);
 
   struct Free {
     void operator()(std::byte* memory) const {
@@ -50,6 +55,7 @@ class SceneEngine {
   };
 
   const config::Scene& config_;
+  Limits limits_;  // the scene's, until grow()
   std::map<std::filesystem::path, ImageFile> images_;
   std::vector<ImageView> bodies_;
   Scene scene_;
