@@ -154,7 +154,7 @@ Facing facing_of_open(const Shape& shape) {
   return openness < kNearlyClosed ? Facing::inward : Facing::doubtful;
 }
 
-void face_closed(const Mesh& mesh, const Components& components, const std::vector<char>& negative,
+void face_closed(const Mesh& mesh, const Components& components, const std::vector<bool>& negative,
                  std::vector<Facing>& facing) {
   const Nesting nesting(mesh, components);
   std::vector<std::uint32_t> order;
@@ -168,7 +168,7 @@ void face_closed(const Mesh& mesh, const Components& components, const std::vect
   for (const std::uint32_t c : order) {
     const std::size_t depth = nesting.depth(c);
     bool turned = depth > 0 && facing[nesting.parent(c)] == Facing::inward;
-    const bool negative_now = (negative[c] != 0) != turned;
+    const bool negative_now = negative[c] != turned;
     if (depth % 2 == 0 && negative_now) turned = !turned;
     facing[c] = turned ? Facing::inward : Facing::fine;
   }
@@ -179,7 +179,7 @@ void face_closed(const Mesh& mesh, const Components& components, const std::vect
 std::vector<Facing> facing_of(const Mesh& mesh, const Components& components) {
   const std::vector<Shape> shapes = shapes_of(mesh, components);
   std::vector<Facing> facing(shapes.size(), Facing::fine);
-  std::vector<char> negative(shapes.size(), 0);
+  std::vector<bool> negative(shapes.size());
   for (std::size_t c = 0; c < shapes.size(); ++c) {
     if (!components.closed[c]) {
       facing[c] = facing_of_open(shapes[c]);
@@ -187,7 +187,7 @@ std::vector<Facing> facing_of(const Mesh& mesh, const Components& components) {
       negative[c] = shapes[c].area > 0 && shapes[c].fullness() < -kLeastClosedFullness;
     }
   }
-  if (std::find(negative.begin(), negative.end(), 1) != negative.end()) {
+  if (std::find(negative.begin(), negative.end(), true) != negative.end()) {
     face_closed(mesh, components, negative, facing);
   }
   return facing;

@@ -72,25 +72,25 @@ std::vector<std::array<Neighbour, 3>> neighbours_of(const std::vector<Face>& fac
 /// patch stays as it is.
 std::size_t orient(std::vector<Face>& faces) {
   const auto neighbours = neighbours_of(faces);
-  std::vector<char> reached(faces.size(), 0), turned(faces.size(), 0);
+  std::vector<bool> reached(faces.size()), turned(faces.size());
   std::size_t total = 0;
   for (std::uint32_t seed = 0; seed < faces.size(); ++seed) {
     if (reached[seed]) continue;
     std::vector<std::uint32_t> patch{seed};
-    reached[seed] = 1;
+    reached[seed] = true;
     std::size_t count = 0;
     for (std::size_t i = 0; i < patch.size(); ++i) {
       for (const Neighbour& next : neighbours[patch[i]]) {
         if (next.face == kNone || reached[next.face]) continue;
-        reached[next.face] = 1;
-        turned[next.face] = next.agrees ? turned[patch[i]] : !turned[patch[i]];
-        count += turned[next.face] != 0;
+        reached[next.face] = true;
+        turned[next.face] = turned[patch[i]] == next.agrees;
+        count += turned[next.face] ? 1U : 0U;
         patch.push_back(next.face);
       }
     }
     const bool invert = 2 * count > patch.size();
     for (const std::uint32_t f : patch) {
-      if ((turned[f] != 0) != invert) turn(faces[f]);
+      if (turned[f] != invert) turn(faces[f]);
     }
     total += invert ? patch.size() - count : count;
   }

@@ -38,7 +38,7 @@ void Text::skip_blanks() {
   for (; at_ < bytes_.size(); ++at_) {
     if (is_blank(bytes_[at_])) continue;
     if (!rules_.continuations || bytes_[at_] != '\\') return;
-    const std::size_t next = bytes_.find_first_not_of("\r", at_ + 1);
+    const std::size_t next = bytes_.find_first_not_of('\r', at_ + 1);
     if (next == std::string_view::npos || bytes_[next] != '\n') return;
     at_ = next;
     ++line_;
