@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the readers of the single formats hand over: polygons exactly as the file has them.
 //
-// CGAL 5.5's own readers are not used. They trust the counts of a file (a PLY list of 2^31 entries
-// or an OFF face of 10^9 corners is allocated first), index past the end of a short colour line
-// (OFF), dereference null for integer coordinates without assertions (PLY), and refuse legal files
-// (OBJ with lines or tabs, PLY with 8- or 16-bit indices, STL in upper case).
+// CGAL 5.5's own readers are not used. They allocate what a file counts before they read it (a PLY
+// list of 5e8 indices in a file of 200 bytes takes 2 GB), dereference null for integer coordinates
+// in a PLY when assertions are off, cut faces short without a word (an OBJ with tabs), and refuse
+// legal files (OBJ with lines, PLY with 8- or 16-bit indices, STL in upper case).
 #pragma once
 
 #include <cstddef>
