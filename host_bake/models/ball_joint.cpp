@@ -39,7 +39,8 @@ double head_radius(const Point& d, std::uint64_t seed) {
 }
 
 std::size_t bowl_vertices(std::size_t triangles) {
-  return static_cast<std::size_t>(kBowlShare * static_cast<double>(triangles / 2));
+  const std::size_t vertices = triangles / 2;
+  return static_cast<std::size_t>(kBowlShare * static_cast<double>(vertices));
 }
 
 /// From the pole to the rim.

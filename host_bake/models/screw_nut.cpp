@@ -125,7 +125,8 @@ Surface turned(Profile profile, std::uint64_t seed) {
 }
 
 std::size_t share_of(std::size_t triangles, double share) {
-  return static_cast<std::size_t>(share * static_cast<double>(triangles / 2));
+  const std::size_t vertices = triangles / 2;
+  return static_cast<std::size_t>(share * static_cast<double>(vertices));
 }
 
 std::vector<Row> mated_rows(std::size_t triangles) {

@@ -21,6 +21,7 @@ struct MakeModelOptions {
   std::string mesh;
   std::size_t triangles = 0;  ///< 0: the model's default
   std::uint64_t seed = 1;
+  bool quiet = false;
 };
 
 std::string model_table() {
@@ -58,7 +59,10 @@ void require_possible(const MakeModelOptions& options) {
 
 void make_model(const MakeModelOptions& options) {
   require_possible(options);
+  const bake::Progress progress = cli::progress(options.quiet);
+  progress("make", 0);
   const bake::Mesh mesh = bake::make_model(options.name, options.triangles, options.seed);
+  progress("write", 0);
   const std::vector<std::byte> ply = bake::to_ply(mesh);
   write_file(options.mesh, std::span<const std::byte>(ply));
 }
@@ -71,9 +75,18 @@ void add_make_model(CLI::App& app) {
   const auto options = std::make_shared<MakeModelOptions>();
   command->add_option("name", options->name, "One of the models below")->required();
   command->add_option("-o,--output", options->mesh, "PLY file to write")->required();
-  command->add_option("--triangles", options->triangles, "How many, met within 2 %");
+  // Without this -1 would be read as the largest number there is.
+  const CLI::Validator not_negative(
+      [](std::string& text) {
+        return text.starts_with('-') ? text + " is negative" : std::string();
+      },
+      "");
+  command->add_option("--triangles", options->triangles, "How many, met within 2 %")
+      ->check(not_negative);
   command->add_option("--seed", options->seed, "Changes textures and places")
+      ->check(not_negative)
       ->capture_default_str();
+  command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->footer(model_table());
   command->callback([options] { make_model(*options); });
 }
