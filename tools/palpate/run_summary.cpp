@@ -91,9 +91,9 @@ std::string histograms(const LoopReport& r) {
 
   std::string text = format("\n  %9s    %-32s  %s\n", "below", "wake-up lateness", "tick time");
   for (auto row = first; row < last; ++row) {
-    text += format("  %9s  %9s %-22s %9s", duration(row->to_ns).c_str(),
-                   grouped(row->latency).c_str(), bar(row->latency, fullest).c_str(),
-                   grouped(row->tick).c_str());
+    text +=
+        format("  %9s  %9s %-22s %9s", duration(row->to_ns).c_str(), grouped(row->latency).c_str(),
+               bar(row->latency, fullest).c_str(), grouped(row->tick).c_str());
     text += (row->tick > 0 ? " " : "") + bar(row->tick, fullest) + "\n";
   }
   return text + "\n";
