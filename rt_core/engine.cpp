@@ -18,8 +18,9 @@ class Engine {
   Settings settings;
   std::span<Pose> poses;  // of this tick, normalised
   levels::QueryMemory query;
-  std::span<std::uint32_t> order;
+  std::span<force::Ranked> ranking;
   std::span<force::Cluster> clusters;
+  std::uint64_t tail_ns = 0;  // what ticks take from the end of refinement to their own, smoothed
 };
 
 namespace {
@@ -64,7 +65,7 @@ Engine* lay_out(Arena& arena, const Scene& scene, const Limits& limits) noexcept
   const auto front = arena.array<std::uint32_t>(limits.nodes);
   const auto waiting = arena.array<levels::Waiting>(limits.nodes);
   const auto contacts = arena.array<Contact>(limits.contacts);
-  const auto order = arena.array<std::uint32_t>(limits.contacts);
+  const auto ranking = arena.array<force::Ranked>(limits.contacts);
   const auto clusters = arena.array<force::Cluster>(limits.clusters);
   const auto scratch = arena.array<convex::PenetrationScratch>(1);
   if (engine.empty() || scratch.empty()) return nullptr;
@@ -75,7 +76,7 @@ Engine* lay_out(Arena& arena, const Scene& scene, const Limits& limits) noexcept
   e.query.waiting = waiting;
   e.query.contacts = contacts;
   e.query.scratch = &scratch[0];
-  e.order = order;
+  e.ranking = ranking;
   e.clusters = clusters;
   return &e;
 }
@@ -106,6 +107,13 @@ double largest_unit_m(std::span<const levels::PairState> pairs) noexcept {
   double unit = 0;
   for (const levels::PairState& pair : pairs) unit = pair.unit_m > unit ? pair.unit_m : unit;
   return unit;
+}
+
+/// Follows the tail within a few ticks; one that was interrupted by the host counts for little.
+std::uint64_t smoothed(std::uint64_t before_ns, std::uint64_t now_ns) noexcept {
+  constexpr std::uint64_t kLeast_ns = 1000;
+  const std::uint64_t most = 4 * before_ns + kLeast_ns;
+  return (3 * before_ns + (now_ns < most ? now_ns : most)) / 4;
 }
 
 Certificate certify(const levels::QueryResult& found, double delta_m, double unit_m,
@@ -176,12 +184,13 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
     pair.delta = settings.delta_m / pair.unit_m;
     levels::move(pair, engine.poses[pair.body_a], engine.poses[pair.body_b]);
   }
-  Meter meter(budget);
+  Meter meter(budget, engine.tail_ns + engine.tail_ns / 4);
   const levels::QueryResult found = levels::query(engine.query, meter);
 
   const std::span<Contact> contacts = engine.query.contacts.first(found.contacts);
   out.contacts = contacts;
-  out.clusters = force::cluster(contacts, settings.cluster_radius_m, engine.order, engine.clusters);
+  out.clusters =
+      force::cluster(contacts, settings.cluster_radius_m, engine.ranking, engine.clusters);
   out.wrench = force::penalty_wrench(contacts, engine.clusters.first(out.clusters), engine.pairs,
                                      engine.tool, engine.poses[engine.tool].position_m, settings);
   out.min_distance_m =
@@ -190,6 +199,7 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
   out.queries = found.queries;
   out.certificate =
       certify(found, settings.delta_m, largest_unit_m(engine.query.pairs), meter.used());
+  engine.tail_ns = smoothed(engine.tail_ns, meter.tail_ns());
   return Status::ok;
 }
 

@@ -9,21 +9,42 @@
 namespace palpate {
 
 /// The clock is read before every query: it is handed in and cheap (a cycle counter, a vDSO call).
+/// Refinement has to end early enough for what follows it (clusters, forces): the reserve, at most
+/// half of what there is.
 class Meter {
  public:
-  explicit Meter(const Budget& budget) noexcept : budget_(budget) {}
+  Meter(const Budget& budget, std::uint64_t reserve_ns) noexcept : budget_(budget) {
+    if (budget.clock_ns == nullptr) return;
+    const std::uint64_t start = now_ns();
+    const std::uint64_t half = budget.deadline_ns > start ? (budget.deadline_ns - start) / 2 : 0;
+    stop_ns_ = budget.deadline_ns - (reserve_ns < half ? reserve_ns : half);
+  }
 
   void charge(std::uint64_t units) noexcept { used_ += units; }
   [[nodiscard]] std::uint64_t used() const noexcept { return used_; }
   [[nodiscard]] bool out_of_units() const noexcept { return used_ >= budget_.units; }
   [[nodiscard]] bool out_of_time() const noexcept {
-    return budget_.clock_ns != nullptr &&
-           budget_.clock_ns(budget_.clock_context) >= budget_.deadline_ns;
+    return budget_.clock_ns != nullptr && now_ns() >= stop_ns_;
+  }
+
+  /// Marks the end of refinement: the tail begins.
+  void begin_tail() noexcept {
+    if (budget_.clock_ns != nullptr) tail_start_ns_ = now_ns();
+  }
+  /// Since begin_tail(); 0 without a clock.
+  [[nodiscard]] std::uint64_t tail_ns() const noexcept {
+    return budget_.clock_ns != nullptr ? now_ns() - tail_start_ns_ : 0;
   }
 
  private:
+  [[nodiscard]] std::uint64_t now_ns() const noexcept {
+    return budget_.clock_ns(budget_.clock_context);
+  }
+
   Budget budget_;
   std::uint64_t used_ = 0;
+  std::uint64_t stop_ns_ = 0;
+  std::uint64_t tail_start_ns_ = 0;
 };
 
 }  // namespace palpate

@@ -8,12 +8,9 @@ namespace {
 
 constexpr double kSameSideCosine = 0.5;  // 60 degrees
 
-struct NearerContact {
-  std::span<const Contact> contacts;
-  bool operator()(std::uint32_t i, std::uint32_t j) const noexcept {
-    const double a = contacts[i].distance_m;
-    const double b = contacts[j].distance_m;
-    return a < b || (a == b && i < j);
+struct Nearer {
+  bool operator()(const Ranked& a, const Ranked& b) const noexcept {
+    return a.distance_m < b.distance_m || (a.distance_m == b.distance_m && a.contact < b.contact);
   }
 };
 
@@ -25,40 +22,34 @@ Vec3d limited(Vec3d v, double most) noexcept {
   return length > most ? (most / length) * v : v;
 }
 
-/// The cluster that a contact joins, or `count`.
-std::uint32_t home_of(const Contact& c, std::span<const Contact> contacts,
-                      std::span<const Cluster> clusters, double radius_m) noexcept {
-  const auto count = static_cast<std::uint32_t>(clusters.size());
-  std::uint32_t best = count;
-  double best2 = radius_m * radius_m;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const Contact& representative = contacts[clusters[k].contact];
-    const double d2 = squared_norm(middle(c) - clusters[k].point_m);
-    if (d2 <= best2 && representative.pair == c.pair &&
-        dot(representative.normal, c.normal) > kSameSideCosine) {
-      best = k;
-      best2 = d2;
+bool has_home(const Cluster& candidate, std::span<const Cluster> clusters,
+              double radius_m) noexcept {
+  const double radius2 = radius_m * radius_m;
+  for (const Cluster& c : clusters) {
+    if (squared_norm(candidate.point_m - c.point_m) <= radius2 && c.pair == candidate.pair &&
+        dot(c.normal, candidate.normal) > kSameSideCosine) {
+      return true;
     }
   }
-  return best;
+  return false;
 }
 
 }  // namespace
 
-std::uint32_t cluster(std::span<Contact> contacts, double radius_m, std::span<std::uint32_t> order,
+std::uint32_t cluster(std::span<Contact> contacts, double radius_m, std::span<Ranked> ranking,
                       std::span<Cluster> out) noexcept {
-  MinQueue<std::uint32_t, NearerContact> queue(order, NearerContact{contacts});
+  MinQueue<Ranked, Nearer> queue(ranking);
   for (std::uint32_t i = 0; i < contacts.size(); ++i) {
     contacts[i].weight = 0;
-    queue.push(i);
+    queue.push({contacts[i].distance_m, i});
   }
   std::uint32_t clusters = 0;
-  for (; !queue.empty(); queue.pop()) {
-    Contact& c = contacts[queue.top()];
-    if (clusters == out.size())
-      break;  // what is left is farther than every representative: it adds no force of its own
-    if (home_of(c, contacts, out.first(clusters), radius_m) < clusters) continue;
-    out[clusters++] = {queue.top(), middle(c)};
+  for (; !queue.empty() && clusters < out.size(); queue.pop()) {
+    const std::uint32_t index = queue.top().contact;
+    Contact& c = contacts[index];
+    const Cluster candidate{middle(c), c.normal, c.pair, index};
+    if (has_home(candidate, out.first(clusters), radius_m)) continue;
+    out[clusters++] = candidate;
     c.weight = 1;
   }
   return clusters;

@@ -87,8 +87,9 @@ class Query {
     for (PairState& pair : memory_.pairs) restart_if_far(pair);
     for (const std::uint32_t node : tree_.front()) wait_if_near(node);
     refine();
-    settle();
     if (!result_.truncated_by_time && !result_.truncated_by_units) raise();
+    meter_.begin_tail();
+    settle();
     return result_;
   }
 

@@ -110,7 +110,9 @@ TEST(EngineTick, distance_is_continuous_through_touching) {
     ASSERT_FALSE(r.contacts.empty());
     EXPECT_NEAR(r.min_distance_m, gap, 1e-6);
     EXPECT_GT(r.wrench.force_N.x, 0);
-    if (i > -50) EXPECT_NEAR(r.wrench.force_N.x, last, 600 * 2.2e-5);
+    if (i > -50) {
+      EXPECT_NEAR(r.wrench.force_N.x, last, 600 * 2.2e-5);
+    }
     last = r.wrench.force_N.x;
   }
 }

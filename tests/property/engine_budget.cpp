@@ -122,16 +122,19 @@ TEST(EngineBudget, same_input_gives_the_same_bits) {
   }
 }
 
+// Apart, so that witnesses are unique; where parallel faces overlap, any point of them is deepest.
 TEST(EngineBudget, exact_answer_does_not_depend_on_history) {
   BakedScene warm({bodies().a.view, bodies().b.view}, {{0, 1}}, kSettings);
   for (int i = 0; i < 60; ++i) {
-    const Pose poses[2] = {slide(i), {}};
+    Pose poses[2] = {slide(i), {}};
+    poses[0].position_m.x += 0.06;
     const TickResult r = tick_or_fail(*warm.engine, poses);
     BakedScene cold({bodies().a.view, bodies().b.view}, {{0, 1}}, kSettings);
     const TickResult s = tick_or_fail(*cold.engine, poses);
-    ASSERT_EQ(r.contacts.empty(), s.contacts.empty());
-    if (!r.contacts.empty()) EXPECT_NEAR(r.min_distance_m, s.min_distance_m, 1e-8);
-    EXPECT_EQ(r.contacts.size(), s.contacts.size());
+    ASSERT_EQ(r.contacts.size(), s.contacts.size());
+    if (!r.contacts.empty()) {
+      EXPECT_NEAR(r.min_distance_m, s.min_distance_m, 1e-8);
+    }
     EXPECT_NEAR(norm(r.wrench.force_N - s.wrench.force_N), 0, 1e-5 * (1 + norm(s.wrench.force_N)));
   }
 }

@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, EngineExact,
                                                 return m;
                                               },
                                               [] { return ring(16, 8, 1, 0.3); }}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& tested) { return tested.param.name; });
 
 TEST(EngineExact, ball_inside_an_open_bowl_touches_its_inner_side) {
   const BakedBody a(ball(8, 12, 0.5));
@@ -140,8 +140,8 @@ TEST(EngineExact, moving_both_bodies_turns_the_wrench_with_them) {
   const Pose world{{3, -2, 5}, turn({0.7, -1.1, 0.4})};
   const Mat3d r = rotation(world.orientation);
   for (int i = 0; i < 50; ++i) {
-    const Pose poses[2] = {{{1.72 - 0.0005 * i, 0.1, 0.002 * i}, turn({0.003 * i, 0, 0.001 * i})},
-                           {}};
+    const Pose poses[2] = {
+        {{1.81 - 0.0002 * i, 0.1, 0.002 * i}, turn({0.3 + 0.003 * i, 0.2, 0.001 * i})}, {}};
     Pose moved[2];
     for (int k = 0; k < 2; ++k) {
       moved[k] = {world.position_m + r * poses[k].position_m,
@@ -160,7 +160,7 @@ TEST(EngineExact, swapping_the_bodies_of_a_pair_mirrors_the_force) {
   const Settings settings{.delta_m = 0.05, .exact = true, .cluster_radius_m = 0.1};
   BakedScene forward({a.view, b.view}, {{0, 1}}, settings);
   BakedScene backward({a.view, b.view}, {{1, 0}}, settings);
-  const Pose poses[2] = {{{0, 0, 1.28}, {}}, {}};
+  const Pose poses[2] = {approach(a.mesh, b.mesh, 0.02, 4, {0, 0, 1}, turn({0.2, 0.1, 0})), {}};
   const TickResult f = tick_or_fail(*forward.engine, poses);
   const TickResult g = tick_or_fail(*backward.engine, poses);
   ASSERT_FALSE(f.contacts.empty());

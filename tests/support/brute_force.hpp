@@ -3,7 +3,6 @@
 // that shares no code with the engine.
 #pragma once
 
-#include <CGAL/Distance_3/Triangle_3_Triangle_3.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/squared_distance_3.h>
 

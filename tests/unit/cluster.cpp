@@ -27,7 +27,7 @@ struct Outcome {
 
 Outcome feel(std::vector<Contact>& contacts, const Settings& settings, std::uint32_t tool = 0,
              std::size_t most = 64) {
-  std::vector<std::uint32_t> order(contacts.size());
+  std::vector<Ranked> order(contacts.size());
   std::vector<Cluster> clusters(most);
   const BodyPair pairs[] = {{0, 1}, {2, 0}, {1, 2}};
   Outcome o;
