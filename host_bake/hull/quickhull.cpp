@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "host_bake/hull/quickhull.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/convex_hull_3.h>
 
@@ -14,7 +14,8 @@ namespace palpate::bake {
 std::vector<Triangle> quickhull(std::span<const PointF> points,
                                 std::span<const std::uint32_t> ids) {
   assert(ids.size() > 4);
-  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  // Planes have to be exact too: with rounded ones CGAL 5.5.1 gives hulls that are not closed.
+  using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
   std::vector<Kernel::Point_3> input;
   input.reserve(ids.size());
   for (const std::uint32_t id : ids)
