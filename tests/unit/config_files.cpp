@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "../support/temporary_folder.hpp"
 #include "config/scene.hpp"
 #include "config/scene_keys.hpp"
-#include "../support/temporary_folder.hpp"
 
 namespace palpate::config {
 namespace {

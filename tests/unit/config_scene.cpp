@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
-#include "config/scene_keys.hpp"
 #include "../support/temporary_folder.hpp"
+#include "config/scene_keys.hpp"
 
 namespace palpate::config {
 namespace {
