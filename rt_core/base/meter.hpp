@@ -22,6 +22,12 @@ class Meter {
 
   void charge(std::uint64_t units) noexcept { used_ += units; }
   [[nodiscard]] std::uint64_t used() const noexcept { return used_; }
+  /// Units left, as far as a counter of 32 bits tells.
+  [[nodiscard]] std::uint32_t queries_left() const noexcept {
+    constexpr std::uint64_t kMost = 0xffffffffu;
+    const std::uint64_t left = budget_.units > used_ ? budget_.units - used_ : 0;
+    return static_cast<std::uint32_t>(left < kMost ? left : kMost);
+  }
   [[nodiscard]] bool out_of_units() const noexcept { return used_ >= budget_.units; }
   [[nodiscard]] bool out_of_time() const noexcept {
     return budget_.clock_ns != nullptr && now_ns() >= stop_ns_;

@@ -107,23 +107,58 @@ LeafContact from_distance(const convex::Distance& d) noexcept {
   return contact;
 }
 
+/// How far parts reach along a direction, so that most pairs of parts are told apart without a
+/// query.
+struct Extents {
+  double least[image::kMaxOpenPatchTriangles] = {};
+  double most[image::kMaxOpenPatchTriangles] = {};
+};
+
+/// `direction` and `offset` in the coordinates of the parts' body.
+Extents extents_of(const Parts& parts, Vec3d direction, double offset) noexcept {
+  Extents extents;
+  image::Vertex storage[3];
+  for (std::uint32_t i = 0; i < parts.count; ++i) {
+    const convex::Hull hull = part(parts, i, storage);
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (std::uint32_t k = 0; k < hull.count; ++k) {
+      const double along = offset + dot(direction, hull.scale * position(hull.vertices[k]));
+      least = along < least ? along : least;
+      most = along > most ? along : most;
+    }
+    extents.least[i] = least;
+    extents.most[i] = most;
+  }
+  return extents;
+}
+
 /// The nearest pair of real surface of two patches of which at least one has no inside. found is
 /// false where none is within reach, or where the triangles cross (distance 0): then the hulls tell
-/// depth and direction.
-LeafContact nearest_parts(const PairState& pair, const Piece& a, const Piece& b, double reach,
-                          bool& out_crossing) noexcept {
+/// depth and direction. Nothing is left out but where most_queries end it.
+LeafContact nearest_parts(const PairState& pair, const Piece& a, const Piece& b, Vec3d normal,
+                          double reach, std::uint32_t most_queries, bool& out_crossing) noexcept {
   const Parts parts_a = parts_of(*pair.image_a, a, pair.scale_a, has(a, PieceFlag::back_open));
   const Parts parts_b = parts_of(*pair.image_b, b, pair.scale_b, has(b, PieceFlag::back_open));
+  const Extents extents_a = extents_of(parts_a, normal, 0);
+  const Extents extents_b = extents_of(parts_b, transpose(pair.b_in_a.rotation) * normal,
+                                       dot(normal, pair.b_in_a.translation));
   image::Vertex storage_a[3];
   image::Vertex storage_b[3];
   LeafContact best;
   best.distance = reach;
   best.lower_bound = reach;
   std::uint32_t queries = 0;
+  bool interrupted = false;
   out_crossing = false;
   for (std::uint32_t i = 0; i < parts_a.count; ++i) {
     const convex::Hull hull_a = part(parts_a, i, storage_a);
     for (std::uint32_t j = 0; j < parts_b.count; ++j) {
+      if (extents_a.least[i] - extents_b.most[j] >= best.distance) continue;
+      if (queries == most_queries) {
+        interrupted = true;
+        break;
+      }
       const convex::Hull hull_b = part(parts_b, j, storage_b);
       convex::Cache cold;
       const convex::Distance d = convex::distance(hull_a, hull_b, pair.b_in_a, best.distance, cold);
@@ -137,6 +172,7 @@ LeafContact nearest_parts(const PairState& pair, const Piece& a, const Piece& b,
     }
   }
   best.queries = queries;
+  best.interrupted = interrupted;
   return best;
 }
 
@@ -160,7 +196,7 @@ LeafContact overlapping(const PairState& pair, const Piece& a, const Piece& b,
 
 LeafContact leaf_contact(const PairState& pair, const Piece& a, const Piece& b,
                          const convex::Distance& query, const convex::Cache& cache, double reach,
-                         convex::PenetrationScratch& scratch) noexcept {
+                         std::uint32_t most_queries, convex::PenetrationScratch& scratch) noexcept {
   const bool overlap =
       query.state == convex::State::penetrating || query.state == convex::State::touching;
   const bool virtual_a = overlap ? !has(a, PieceFlag::all_real) : !witness_a_real(pair, a, query);
@@ -169,7 +205,8 @@ LeafContact leaf_contact(const PairState& pair, const Piece& a, const Piece& b,
       (virtual_a && has(a, PieceFlag::back_open)) || (virtual_b && has(b, PieceFlag::back_open));
   if (exposed) {
     bool crossing = false;
-    LeafContact nearest = nearest_parts(pair, a, b, reach, crossing);
+    const Vec3d normal = overlap ? Vec3d{} : query.normal;
+    const LeafContact nearest = nearest_parts(pair, a, b, normal, reach, most_queries, crossing);
     if (!crossing) return nearest;
     LeafContact contact = overlapping(pair, a, b, cache, scratch);
     contact.queries = nearest.queries;

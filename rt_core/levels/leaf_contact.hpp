@@ -19,6 +19,7 @@ struct LeafContact {
   Vec3d point_b{};
   Vec3d normal{};             ///< unit, from b to a
   std::uint32_t queries = 0;  ///< convex queries spent beyond the caller's
+  bool interrupted = false;   ///< most_queries ended the search: something nearer may be left
   bool capped = false;        ///< an iteration cap was met: [lower_bound, distance] is an interval
 };
 
@@ -33,11 +34,13 @@ inline constexpr double kOnSurface = 1e-6;
 /// piece: the pair contributes nothing (the paper leaves this open). Pieces of open or
 /// self-crossing components have no inside; there the triangles of the patch are queried one by one
 /// instead of the hull. Overlapping hulls: penetration depth and direction (Appendix B, step 2b).
-/// @param query  the result for the hulls of a and b; @param reach only contacts nearer than this
-/// are wanted Cost: none beyond the query for closed meshes; else at most kMaxOpenPatchTriangles^2
-/// queries. Penetration: see convex/.
+/// @param query         the result for the hulls of a and b
+/// @param reach         only contacts nearer than this are wanted
+/// @param most_queries  to spend on triangles; beyond that the contact may not be the nearest
+/// Cost: none beyond the query for closed meshes; else at most kMaxOpenPatchTriangles^2 queries, of
+/// which all but a few are told apart by their extents. Penetration: see convex/.
 LeafContact leaf_contact(const PairState& pair, const image::Piece& a, const image::Piece& b,
                          const convex::Distance& query, const convex::Cache& cache, double reach,
-                         convex::PenetrationScratch& scratch) noexcept;
+                         std::uint32_t most_queries, convex::PenetrationScratch& scratch) noexcept;
 
 }  // namespace palpate::levels

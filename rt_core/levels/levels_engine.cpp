@@ -189,12 +189,16 @@ class Query {
 
   void touch(PairState& pair, Node& node, const Piece& a, const Piece& b,
              const convex::Distance& d) noexcept {
-    const LeafContact contact =
-        leaf_contact(pair, a, b, d, node.cache, pair.delta, *memory_.scratch);
+    const LeafContact contact = leaf_contact(pair, a, b, d, node.cache, pair.delta,
+                                             meter_.queries_left(), *memory_.scratch);
     meter_.charge(contact.queries);
     result_.queries += contact.queries;
+    if (contact.interrupted) {
+      result_.truncated_by_units = true;
+      leave_unresolved(lower_now(pair, node) * pair.unit_m, a, b);
+    }
     if (!contact.found) return;
-    prove(pair, node, contact.lower_bound);
+    if (!contact.interrupted) prove(pair, node, contact.lower_bound);
     if (contact.capped) {
       result_.iteration_cap_met = true;
       const double gap = (contact.distance - contact.lower_bound) * pair.unit_m;
