@@ -238,19 +238,29 @@ class Judge {
     return {};
   }
 
+  /// Of the hull's facet in the plane of `face` some point is not covered, or the patch's faces in
+  /// that plane lack area (a slit too narrow to hit).
   bool partly_open(const Patch& patch, const Triple& face) {
-    for (const Triple& other : patch.hull.faces) {
-      const auto point = [&](std::uint32_t v) { return at(patch.vertices[v]); };
-      const bool same_plane = std::all_of(other.begin(), other.end(), [&](std::uint32_t v) {
-        return exact_side(point(face[0]), point(face[1]), point(face[2]), point(v)) == 0;
+    const auto in_plane = [&](const Triple& mesh_vertices) {
+      return std::all_of(mesh_vertices.begin(), mesh_vertices.end(), [&](std::uint32_t v) {
+        return exact_side(at(patch.vertices[face[0]]), at(patch.vertices[face[1]]),
+                          at(patch.vertices[face[2]]), at(v)) == 0;
       });
-      for (int i = 0; same_plane && i < 40; ++i) {
-        const Vec p = sample(points_[other[0]], points_[other[1]], points_[other[2]]);
-        const Plane plane = plane_of(points_[face[0]], points_[face[1]], points_[face[2]]);
-        if (!covered_in_plane(patch, plane, p)) return true;
-      }
+    };
+    const auto twice_area = [](Vec a, Vec b, Vec c) { return length(cross(b - a, c - a)); };
+    const Plane plane = plane_of(points_[face[0]], points_[face[1]], points_[face[2]]);
+    long double total = 0;
+    for (const Triple& f : patch.hull.faces) {
+      if (!in_plane({patch.vertices[f[0]], patch.vertices[f[1]], patch.vertices[f[2]]})) continue;
+      for (int i = 0; i < 40; ++i)
+        if (!covered_in_plane(patch, plane, sample(points_[f[0]], points_[f[1]], points_[f[2]])))
+          return true;
+      total += twice_area(points_[f[0]], points_[f[1]], points_[f[2]]);
     }
-    return false;
+    long double missing = total;
+    for (const std::uint32_t f : patch.faces)
+      if (in_plane(mesh_.faces[f])) missing -= twice_area(corner(f, 0), corner(f, 1), corner(f, 2));
+    return missing > 1e-10L * total;
   }
 
   bool covered_in_plane(const Patch& patch, const Plane& plane, Vec p) const {
