@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <numeric>
 
 namespace palpate::bake {
 namespace {
@@ -24,28 +23,13 @@ struct TooManyMeetings {};
 
 Point3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
 
-/// The first vertex at each vertex's position.
-std::vector<std::uint32_t> first_at_position(const std::vector<Point>& points) {
-  std::vector<std::uint32_t> order(points.size());
-  std::iota(order.begin(), order.end(), std::uint32_t{0});
-  std::sort(order.begin(), order.end(), [&points](std::uint32_t a, std::uint32_t b) {
-    return points[a] < points[b] || (points[a] == points[b] && a < b);
-  });
-  std::vector<std::uint32_t> first(points.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool equal = i > 0 && points[order[i]] == points[order[i - 1]];
-    first[order[i]] = equal ? first[order[i - 1]] : order[i];
-  }
-  return first;
-}
-
 /// Two triangles as six points, the shared ones first and in the same places of both.
 struct Couple {
   std::array<Point3, 3> a, b;
   int shared = 0;
 };
 
-Couple align(const std::vector<Point>& points, Face a, Face b) {
+Couple align(std::array<Point, 3> a, std::array<Point, 3> b) {
   Couple couple;
   const auto place = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
   for (std::size_t s = 0; s < 3; ++s) {
@@ -57,8 +41,8 @@ Couple align(const std::vector<Point>& points, Face a, Face b) {
     ++couple.shared;
   }
   for (std::size_t i = 0; i < 3; ++i) {
-    couple.a[i] = to_cgal(points[a[i]]);
-    couple.b[i] = to_cgal(points[b[i]]);
+    couple.a[i] = to_cgal(a[i]);
+    couple.b[i] = to_cgal(b[i]);
   }
   return couple;
 }
@@ -78,8 +62,10 @@ bool fold_over_edge(const Couple& c) {
          CGAL::coplanar_orientation(c.a[0], c.a[1], c.a[2], c.b[2]) == CGAL::POSITIVE;
 }
 
-bool cross(const std::vector<Point>& points, const Face& a, const Face& b) {
-  const Couple c = align(points, a, b);
+}  // namespace
+
+bool triangles_cross(const std::array<Point, 3>& a, const std::array<Point, 3>& b) {
+  const Couple c = align(a, b);
   switch (c.shared) {
     case 0:
       return CGAL::do_intersect(Kernel::Triangle_3(c.a[0], c.a[1], c.a[2]),
@@ -93,31 +79,30 @@ bool cross(const std::vector<Point>& points, const Face& a, const Face& b) {
   }
 }
 
-}  // namespace
-
 bool collinear(const Point& a, const Point& b, const Point& c) {
   return CGAL::collinear(to_cgal(a), to_cgal(b), to_cgal(c));
 }
 
 std::optional<std::vector<Pair>> crossing_pairs(const Mesh& mesh) {
-  const std::vector<std::uint32_t> first = first_at_position(mesh.points);
-  std::vector<Face> faces;
+  const auto corners = [&mesh](std::uint32_t face) {
+    const Face& f = mesh.faces[face];
+    return std::array<Point, 3>{mesh.points[f[0]], mesh.points[f[1]], mesh.points[f[2]]};
+  };
   std::vector<Box> boxes;
-  for (const Face& f : mesh.faces) {
-    faces.push_back({first[f[0]], first[f[1]], first[f[2]]});
-    const Point &a = mesh.points[f[0]], &b = mesh.points[f[1]], &c = mesh.points[f[2]];
+  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto [a, b, c] = corners(f);
     if (collinear(a, b, c)) continue;
     const CGAL::Bbox_3 box = to_cgal(a).bbox() + to_cgal(b).bbox() + to_cgal(c).bbox();
-    boxes.emplace_back(box, static_cast<std::uint32_t>(faces.size() - 1));
+    boxes.emplace_back(box, f);
   }
-  const std::size_t limit = kMaxMeetings + kMaxMeetingsPerFace * faces.size();
+  const std::size_t limit = kMaxMeetings + kMaxMeetingsPerFace * mesh.faces.size();
   std::atomic<std::size_t> meetings{0};
   tbb::concurrent_vector<Pair> found;
   try {
     CGAL::box_self_intersection_d<CGAL::Parallel_tag>(
         boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
           if (meetings.fetch_add(1, std::memory_order_relaxed) >= limit) throw TooManyMeetings{};
-          if (!cross(mesh.points, faces[a.info()], faces[b.info()])) return;
+          if (!triangles_cross(corners(a.info()), corners(b.info()))) return;
           found.push_back(std::minmax(a.info(), b.info()));
         });
   } catch (const TooManyMeetings&) {

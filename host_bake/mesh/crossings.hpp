@@ -2,6 +2,7 @@
 // Where a surface passes through itself.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -25,6 +26,10 @@ inline constexpr std::size_t kMaxMeetingsPerFace = 100;
 /// O(n log n + boxes that meet). Precondition: finite points, indices in range.
 std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>> crossing_pairs(
     const Mesh& mesh);
+
+/// The same for one pair: do they have more in common than the corners that are equal? Both have
+/// area. Exact.
+bool triangles_cross(const std::array<Point, 3>& a, const std::array<Point, 3>& b);
 
 /// Are the three points on one line, exactly?
 bool collinear(const Point& a, const Point& b, const Point& c);

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "host_bake/simplify/constraints.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "host_bake/decompose/geometry.hpp"
+#include "host_bake/hull/predicates.hpp"
+#include "host_bake/mesh/crossings.hpp"
+
+namespace palpate::bake {
+namespace {
+
+using Corners = std::array<PointF, 3>;
+
+int side(const Corners& plane, const PointF& p) {
+  if (p == plane[0] || p == plane[1] || p == plane[2]) return 0;
+  return orient_3d(plane[0], plane[1], plane[2], p);
+}
+
+Vec3d normal_of(const Corners& c) {
+  const Vec3d a = position(c[0]);
+  return cross(position(c[1]) - a, position(c[2]) - a);
+}
+
+/// All corners of b that are not corners of a lie strictly on one side of a's plane.
+bool apart(const Corners& a, const Corners& b) {
+  int seen = 0;
+  for (const PointF& p : b) {
+    if (p == a[0] || p == a[1] || p == a[2]) continue;
+    const int s = orient_3d(a[0], a[1], a[2], p);
+    if (s == 0 || s == -seen) return false;
+    seen = s;
+  }
+  return seen != 0;
+}
+
+bool cross_each_other(const Corners& a, const Corners& b) {
+  if (apart(a, b) || apart(b, a)) return false;
+  const auto exact = [](const Corners& c) {
+    std::array<Point, 3> out{};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t k = 0; k < 3; ++k) out[i][k] = static_cast<double>(c[i][k]);
+    return out;
+  };
+  return triangles_cross(exact(a), exact(b));
+}
+
+bool enters(ShrunkHull& hull, const Corners& c) {
+  return hull.entered_by(position(c[0]), position(c[1]), position(c[2]));
+}
+
+FaceBox box_of(const Corners& c) { return palpate::bake::box_of(c[0], c[1], c[2]); }
+
+}  // namespace
+
+const char* name_of(Refusal refusal) {
+  constexpr std::array<const char*, kRefusals> kNames = {
+      "none",  "link",       "frozen", "local",      "flip",    "rounding",
+      "split", "visibility", "hull",   "other hull", "crossing"};
+  return kNames[static_cast<std::size_t>(refusal)];
+}
+
+Constraints::Constraints(const Surface& surface, const PatchLists& patches)
+    : surface_(surface),
+      patches_(patches),
+      gatherer_(surface),
+      builder_(surface),
+      faces_(surface.faces.size()),
+      boxes_(patches.count()),
+      hulls_(patches.count()),
+      kinds_(patches.count(), HullKind::unknown) {
+  for (std::uint32_t f = 0; f < surface.faces.size(); ++f) faces_.put(f, box_of(corners(f)));
+  for (std::uint32_t p = 0; p < patches.count(); ++p) {
+    const std::array<std::uint32_t, 1> one = {p};
+    gatherer_.gather(patches_, one, nullptr, other_);
+    place(p, palpate::bake::box_of(other_.points));
+  }
+}
+
+void Constraints::place(std::uint32_t patch, const FaceBox& box) {
+  // Single faces have hulls without interior: nothing can enter them.
+  if (patches_.size(patch) > 1) {
+    boxes_.put(patch, box);
+  } else {
+    boxes_.take(patch);
+  }
+}
+
+Corners Constraints::corners_after(std::size_t ring_face) const {
+  return {position_, surface_.points[ring_->left(ring_face)],
+          surface_.points[ring_->right(ring_face)]};
+}
+
+Corners Constraints::corners(std::uint32_t face) const {
+  const Face& f = surface_.faces[face];
+  return {surface_.points[f[0]], surface_.points[f[1]], surface_.points[f[2]]};
+}
+
+bool Constraints::is_affected(std::uint32_t patch) const {
+  for (std::size_t i = 0; i < affected_count_; ++i)
+    if (affected_[i].shape.patch == patch) return true;
+  return false;
+}
+
+/// Both faces that go belong to the patch and joined two of its parts, of which neither surrounds
+/// an end of the edge.
+bool Constraints::may_split(std::uint32_t patch) const {
+  const Ring& ring = *ring_;
+  if (ring.twin == kNothing || patches_.of(ring.edge / 3) != patch ||
+      patches_.of(ring.twin / 3) != patch)
+    return false;
+  bool all_at_kept = ring.closed, all_at_removed = ring.closed;
+  for (const std::uint32_t s : ring.spokes) {
+    if (patches_.of(s / 3) == patch) continue;
+    (surface_.start(s) == ring.kept ? all_at_kept : all_at_removed) = false;
+  }
+  return !all_at_kept && !all_at_removed;
+}
+
+Refusal Constraints::begin(const Ring& ring) {
+  ring_ = &ring;
+  affected_count_ = 0;
+  const auto add = [this](std::uint32_t half_edge) {
+    if (half_edge == kNothing) return;
+    const std::uint32_t patch = patches_.of(half_edge / 3);
+    if (is_affected(patch)) return;
+    if (affected_.size() == affected_count_) affected_.emplace_back();
+    affected_[affected_count_++].shape.patch = patch;
+  };
+  for (const std::uint32_t s : ring.spokes) add(s);
+  add(ring.edge);
+  add(ring.twin);
+  for (std::size_t i = 0; i < affected_count_; ++i) {
+    Affected& a = affected_[i];
+    const std::uint32_t patch = a.shape.patch;
+    a.kind = HullKind::unknown;
+    a.closed = patches_.closed(patch);
+    if (a.closed) continue;
+    const std::array<std::uint32_t, 1> one = {patch};
+    gatherer_.gather(patches_, one, &ring, a.shape);
+    if (may_split(patch) && !gatherer_.connected(a.shape, &ring)) return Refusal::split;
+  }
+  return Refusal::none;
+}
+
+Refusal Constraints::judge(const PointF& position) {
+  position_ = position;
+  if (const Refusal r = judge_faces(); r != Refusal::none) return r;
+  if (const Refusal r = judge_edges(); r != Refusal::none) return r;
+  for (std::size_t i = 0; i < affected_count_; ++i) {
+    PatchShape& shape = affected_[i].shape;
+    if (affected_[i].closed || shape.faces.empty()) continue;
+    shape.points[shape.apex] = position;
+    if (visible(shape)) return Refusal::visibility;
+  }
+  for (std::size_t i = 0; i < affected_count_; ++i)
+    if (hull_is_entered(affected_[i])) return Refusal::hull;
+  if (enters_others()) return Refusal::other_hull;
+  return crosses() ? Refusal::crossing : Refusal::none;
+}
+
+Refusal Constraints::judge_faces() const {
+  for (std::size_t i = 0; i < ring_->faces(); ++i) {
+    const Corners now = corners_after(i);
+    if (now[0] == now[1] || now[0] == now[2] || collinear(now[0], now[1], now[2]))
+      return Refusal::flip;
+    const std::uint32_t f = ring_->spokes[i] / 3;
+    const Vec3d before = normal_of(corners(f));
+    if (squared_norm(before) > 0 && !(dot(before, normal_of(now)) > 0)) return Refusal::flip;
+  }
+  return Refusal::none;
+}
+
+/// Eq. 2 on rounded positions, exactly; coplanar neighbours must not be folded onto each other.
+Refusal Constraints::judge_edges() const {
+  const Ring& ring = *ring_;
+  const auto reflex = [](const Corners& a, const Corners& b, const PointF& apex_of_b) {
+    const int s = side(a, apex_of_b);
+    return s > 0 || (s == 0 && dot(normal_of(a), normal_of(b)) < 0);
+  };
+  for (std::size_t i = 0; i < ring.faces(); ++i) {
+    const std::uint32_t patch = patches_.of(ring.spokes[i] / 3);
+    const Corners here = corners_after(i);
+    if (ring.far[i] != kNothing && patches_.of(ring.far[i] / 3) == patch &&
+        reflex(corners(ring.far[i] / 3), here, position_))
+      return Refusal::rounding;
+    if (i == 0 && !ring.closed) continue;
+    const std::size_t before = i == 0 ? ring.faces() - 1 : i - 1;
+    if (patches_.of(ring.spokes[before] / 3) == patch &&
+        reflex(here, corners_after(before), surface_.points[ring.left(before)]))
+      return Refusal::rounding;
+  }
+  return Refusal::none;
+}
+
+/// Some vertex is strictly above a face, and one of the two is new.
+bool Constraints::visible(const PatchShape& shape) const {
+  for (std::size_t f = 0; f < shape.faces.size(); ++f) {
+    const Triangle& t = shape.corners[f];
+    const Corners plane = {shape.points[t[0]], shape.points[t[1]], shape.points[t[2]]};
+    if (!shape.changed[f]) {
+      if (side(plane, position_) > 0) return true;
+      continue;
+    }
+    for (const PointF& p : shape.points)
+      if (side(plane, p) > 0) return true;
+  }
+  return false;
+}
+
+bool Constraints::entered_by_unchanged(const Affected& affected, ShrunkHull& hull,
+                                       const FaceBox& box) const {
+  return faces_.search(box, [&](std::uint32_t f) {
+    if (patches_.of(f) == affected.shape.patch) return false;
+    if (f == ring_->edge / 3 || f == ring_->twin / 3) return false;
+    const Face& face = surface_.faces[f];
+    for (const std::uint32_t v : face)
+      if (v == ring_->kept || v == ring_->removed) return false;
+    return enters(hull, corners(f));
+  });
+}
+
+bool Constraints::hull_is_entered(Affected& affected) {
+  const PatchShape& shape = affected.shape;
+  if (affected.closed) {
+    std::vector<PointF> points = {position_};
+    for (const std::uint32_t v : ring_->vertices) points.push_back(surface_.points[v]);
+    if (builder_.build(points, affected.hull) == HullKind::empty) return false;
+    return entered_by_unchanged(affected, affected.hull, palpate::bake::box_of(points));
+  }
+  if (shape.faces.empty()) return false;
+  affected.kind = builder_.build(shape, ring_, gatherer_, affected.hull);
+  if (affected.kind == HullKind::empty) return false;
+  if (affected.kind == HullKind::refused) return true;
+  for (std::size_t i = 0; i < ring_->faces(); ++i)
+    if (patches_.of(ring_->spokes[i] / 3) != shape.patch &&
+        enters(affected.hull, corners_after(i)))
+      return true;
+  return entered_by_unchanged(affected, affected.hull, palpate::bake::box_of(shape.points));
+}
+
+ShrunkHull* Constraints::hull_of(std::uint32_t patch) {
+  if (kinds_[patch] == HullKind::unknown) {
+    const std::array<std::uint32_t, 1> one = {patch};
+    gatherer_.gather(patches_, one, nullptr, other_);
+    if (!hulls_[patch]) hulls_[patch] = std::make_unique<ShrunkHull>();
+    kinds_[patch] = builder_.build(other_, nullptr, gatherer_, *hulls_[patch]);
+    if (kinds_[patch] != HullKind::solid) hulls_[patch].reset();
+  }
+  return hulls_[patch].get();
+}
+
+bool Constraints::enters_others() {
+  for (std::size_t i = 0; i < ring_->faces(); ++i) {
+    const Corners now = corners_after(i);
+    const bool entered = boxes_.search(box_of(now), [&](std::uint32_t patch) {
+      if (is_affected(patch) || patches_.closed(patch)) return false;
+      ShrunkHull* hull = hull_of(patch);
+      return hull != nullptr && enters(*hull, now);
+    });
+    if (entered) return true;
+  }
+  return false;
+}
+
+bool Constraints::crosses() const {
+  for (std::size_t i = 0; i < ring_->faces(); ++i) {
+    const Corners now = corners_after(i);
+    const std::uint32_t patch = patches_.of(ring_->spokes[i] / 3);
+    for (std::size_t j = 0; j < i; ++j)
+      if (patches_.of(ring_->spokes[j] / 3) != patch && cross_each_other(now, corners_after(j)))
+        return true;
+    const bool crossed = faces_.search(box_of(now), [&](std::uint32_t f) {
+      if (patches_.of(f) == patch) return false;
+      for (const std::uint32_t v : surface_.faces[f])
+        if (v == ring_->kept || v == ring_->removed) return false;
+      return cross_each_other(now, corners(f));
+    });
+    if (crossed) return true;
+  }
+  return false;
+}
+
+void Constraints::follow_collapse() {
+  for (const std::uint32_t e : {ring_->edge, ring_->twin})
+    if (e != kNothing) faces_.take(e / 3);
+  for (const std::uint32_t s : ring_->spokes) faces_.put(s / 3, box_of(corners(s / 3)));
+  for (std::size_t i = 0; i < affected_count_; ++i) {
+    Affected& a = affected_[i];
+    const std::uint32_t patch = a.shape.patch;
+    kinds_[patch] = a.closed ? HullKind::unknown : a.kind;
+    if (a.closed) {
+      FaceBox box = boxes_.box(patch);  // may be too large from now on, never too small
+      box.add(position_);
+      place(patch, box);
+      continue;
+    }
+    if (a.shape.faces.empty()) {
+      boxes_.take(patch);
+      hulls_[patch].reset();
+      continue;
+    }
+    place(patch, palpate::bake::box_of(a.shape.points));
+    if (a.kind == HullKind::solid) {
+      if (!hulls_[patch]) hulls_[patch] = std::make_unique<ShrunkHull>();
+      std::swap(*hulls_[patch], a.hull);
+    } else {
+      hulls_[patch].reset();
+    }
+  }
+}
+
+bool Constraints::may_merge(std::uint32_t a, std::uint32_t b) {
+  const std::array<std::uint32_t, 2> both = {a, b};
+  gatherer_.gather(patches_, both, nullptr, merged_.shape);
+  const PatchShape& shape = merged_.shape;
+  for (std::size_t f = 0; f < shape.faces.size(); ++f) {
+    const Triangle& t = shape.corners[f];
+    const Corners plane = {shape.points[t[0]], shape.points[t[1]], shape.points[t[2]]};
+    for (const PointF& p : shape.points)
+      if (side(plane, p) > 0) return false;
+  }
+  merged_.kind = builder_.build(shape, nullptr, gatherer_, merged_.hull);
+  if (merged_.kind == HullKind::refused) return false;
+  if (merged_.kind == HullKind::empty) return true;
+  return !faces_.search(palpate::bake::box_of(shape.points), [&](std::uint32_t f) {
+    return patches_.of(f) != a && patches_.of(f) != b && enters(merged_.hull, corners(f));
+  });
+}
+
+void Constraints::follow_merge(std::uint32_t kept, std::uint32_t gone) {
+  boxes_.take(gone);
+  hulls_[gone].reset();
+  place(kept, palpate::bake::box_of(merged_.shape.points));
+  kinds_[kept] = merged_.kind;
+  if (merged_.kind == HullKind::solid) {
+    if (!hulls_[kept]) hulls_[kept] = std::make_unique<ShrunkHull>();
+    std::swap(*hulls_[kept], merged_.hull);
+  } else {
+    hulls_[kept].reset();
+  }
+}
+
+}  // namespace palpate::bake

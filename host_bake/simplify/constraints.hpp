@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The constraints of Sec. 4.3 on one collapse or merge at a time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "host_bake/simplify/box_grid.hpp"
+#include "host_bake/simplify/patch_hulls.hpp"
+#include "host_bake/simplify/patch_lists.hpp"
+#include "host_bake/simplify/patch_shape.hpp"
+#include "host_bake/simplify/surface.hpp"
+
+namespace palpate::bake {
+
+/// Why an edge is not collapsed, in the order in which the tests are made.
+enum class Refusal : std::uint8_t {
+  none,
+  link,        ///< the topology would change, or the vertex has too many neighbours
+  frozen,      ///< next to faces that cross
+  local,       ///< no position meets eqs. 2 to 4
+  flip,        ///< a face would turn over or lose its area
+  rounding,    ///< eqs. 2 to 4 fail once the position is rounded to float
+  split,       ///< a patch would fall apart
+  visibility,  ///< constraint 2
+  hull,        ///< constraint 3: a face enters the hull of a changed patch
+  other_hull,  ///< constraint 3: a changed face enters the hull of another patch
+  crossing,    ///< the surface would cross itself
+};
+inline constexpr std::size_t kRefusals = 11;
+const char* name_of(Refusal refusal);
+
+/// Judges positions of the new vertex, exactly on float coordinates, and keeps what it needs for
+/// that: places of faces and patches, and hulls of patches until they change.
+///
+/// Hulls are judged as in decompose(): a face enters where something is left of it after clipping
+/// by the hull shrunk by kShrink_rel. A patch that is a whole convex component can only be entered
+/// by a face that crosses it, and grows only by the hull of the new vertex and its ring.
+class Constraints {
+ public:
+  Constraints(const Surface& surface, const PatchLists& patches);
+
+  /// Begins to judge the collapse of a ring.
+  [[nodiscard]] Refusal begin(const Ring& ring);
+  [[nodiscard]] Refusal judge(const PointF& position);
+
+  /// After the surface and the patches have been changed as judged last.
+  void follow_collapse();
+
+  /// May two neighbouring patches be one? Where so, and after patches.merge(), follow_merge().
+  [[nodiscard]] bool may_merge(std::uint32_t a, std::uint32_t b);
+  void follow_merge(std::uint32_t kept, std::uint32_t gone);
+
+ private:
+  struct Affected {
+    PatchShape shape;
+    ShrunkHull hull;
+    HullKind kind = HullKind::unknown;
+    bool closed = false;
+  };
+
+  [[nodiscard]] bool may_split(std::uint32_t patch) const;
+  [[nodiscard]] const PointF& at(std::uint32_t v) const {
+    return v == ring_->kept || v == ring_->removed ? position_ : surface_.points[v];
+  }
+  [[nodiscard]] std::array<PointF, 3> corners_after(std::size_t ring_face) const;
+  [[nodiscard]] std::array<PointF, 3> corners(std::uint32_t face) const;
+  [[nodiscard]] bool is_affected(std::uint32_t patch) const;
+  [[nodiscard]] Refusal judge_faces() const;
+  [[nodiscard]] Refusal judge_edges() const;
+  [[nodiscard]] bool visible(const PatchShape& shape) const;
+  [[nodiscard]] bool hull_is_entered(Affected& affected);
+  [[nodiscard]] bool entered_by_unchanged(const Affected& affected, ShrunkHull& hull,
+                                          const FaceBox& box) const;
+  [[nodiscard]] bool enters_others();
+  [[nodiscard]] bool crosses() const;
+  [[nodiscard]] ShrunkHull* hull_of(std::uint32_t patch);
+  void place(std::uint32_t patch, const FaceBox& box);
+
+  const Surface& surface_;
+  const PatchLists& patches_;
+  ShapeGatherer gatherer_;
+  HullBuilder builder_;
+  BoxGrid faces_, boxes_;
+  std::vector<std::unique_ptr<ShrunkHull>> hulls_;  // by patch, where solid
+  std::vector<HullKind> kinds_;                     // by patch
+
+  const Ring* ring_ = nullptr;
+  PointF position_{};
+  std::vector<Affected> affected_;
+  std::size_t affected_count_ = 0;
+  Affected merged_;
+  PatchShape other_;
+};
+
+}  // namespace palpate::bake

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "host_bake/simplify/patch_hulls.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "host_bake/decompose/flat_cover.hpp"
+#include "host_bake/hull/predicates.hpp"
+
+namespace palpate::bake {
+namespace {
+
+constexpr std::size_t kFewPoints = 24;  // that are inserted without a hint where to look
+
+}  // namespace
+
+/// From the first face with area; false where there is none.
+bool HullBuilder::start(std::span<const PointF> points, std::span<const Triangle> faces) {
+  if (points.size() > points_.size()) {
+    points_.resize(2 * points.size() + 64);
+    hull_.emplace(points_);
+  }
+  std::copy(points.begin(), points.end(), points_.begin());
+  for (const Triangle& f : faces) {
+    if (collinear(points[f[0]], points[f[1]], points[f[2]])) continue;
+    hull_->start(f, false);
+    return true;
+  }
+  return false;
+}
+
+/// Corners in the plane of a flat hull wait for one off it, so there are two rounds.
+void HullBuilder::insert_all(std::size_t points) {
+  for (int round = 0; round < 2; ++round) {
+    const bool was_flat = hull_->flat();
+    for (std::uint32_t v = 0; v < points; ++v)
+      static_cast<void>(hull_->insert(v, GrowingHull::kNone));  // nothing is real, nothing refused
+    if (!was_flat || hull_->flat()) return;
+  }
+}
+
+void HullBuilder::insert_walking(const PatchShape& shape, const std::vector<std::uint32_t>& order) {
+  for (int round = 0; round < 2; ++round) {
+    const bool was_flat = hull_->flat();
+    for (const std::uint32_t f : order)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Triangle& c = shape.corners[f];
+        if (hull_->has(c[i])) continue;
+        std::uint32_t near = GrowingHull::kNone;
+        for (const std::uint32_t other : c)
+          if (hull_->has(other)) near = other;
+        static_cast<void>(hull_->insert(c[i], near));
+      }
+    if (!was_flat || hull_->flat()) return;
+  }
+}
+
+bool HullBuilder::fills_polygon(const PatchShape& shape, const Ring* ring,
+                                ShapeGatherer& gatherer) {
+  if (shape.faces.size() == 1) return true;
+  gatherer.index(shape);
+  NormalMesh mesh;
+  mesh.points = shape.points;
+  mesh.faces.assign(shape.corners.begin(), shape.corners.end());
+  SurfaceEdges edges;
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t i = 0; i < shape.faces.size(); ++i) {
+    all.push_back(i);
+    for (std::uint32_t h = 3 * shape.faces[i]; h < 3 * shape.faces[i] + 3; ++h) {
+      const std::uint32_t t = gatherer.twin_after(ring, h);
+      const std::uint32_t g = t == kNothing ? kNothing : gatherer.place(t / 3);
+      edges.twin.push_back(g == kNothing ? SurfaceEdges::kNone : 3 * g + t % 3);
+    }
+  }
+  const std::vector<std::uint32_t> owner(all.size(), 0);
+  return fills_convex_polygon(mesh, edges, all, owner, 0);
+}
+
+HullKind HullBuilder::build(const PatchShape& shape, const Ring* ring, ShapeGatherer& gatherer,
+                            ShrunkHull& out_hull) {
+  if (shape.faces.size() == 1) return HullKind::empty;
+  if (!start(shape.points, shape.corners)) return HullKind::empty;
+  if (shape.points.size() <= kFewPoints) {
+    insert_all(shape.points.size());
+  } else {
+    insert_walking(shape, gatherer.walk(shape, ring));
+  }
+  if (!hull_->flat()) {
+    out_hull.build(*hull_);
+    if (!out_hull.thin()) return HullKind::solid;
+  }
+  if (!fills_polygon(shape, ring, gatherer)) return HullKind::refused;
+  return hull_->flat() ? HullKind::empty : HullKind::solid;
+}
+
+HullKind HullBuilder::build(std::span<const PointF> points, ShrunkHull& out_hull) {
+  std::vector<Triangle> faces;
+  for (std::uint32_t i = 2; i < points.size(); ++i) faces.push_back({0, i - 1, i});
+  if (!start(points, faces)) return HullKind::empty;
+  insert_all(points.size());
+  if (hull_->flat()) return HullKind::empty;
+  out_hull.build(*hull_);
+  return HullKind::solid;
+}
+
+}  // namespace palpate::bake

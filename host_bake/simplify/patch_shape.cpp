@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "host_bake/simplify/patch_shape.hpp"
+
+#include <cstddef>
+#include <limits>
+
+namespace palpate::bake {
+
+FaceBox box_of(std::span<const PointF> points) {
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  FaceBox box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  for (const PointF& p : points) box.add(p);
+  return box;
+}
+
+FaceBox box_of(const PointF& a, const PointF& b, const PointF& c) {
+  FaceBox box{a, a};
+  box.add(b);
+  box.add(c);
+  return box;
+}
+
+ShapeGatherer::ShapeGatherer(const Surface& surface)
+    : surface_(surface),
+      vertex_mark_(surface.points.size(), 0),
+      vertex_place_(surface.points.size(), 0),
+      face_mark_(surface.faces.size(), 0),
+      face_place_(surface.faces.size(), 0) {}
+
+void ShapeGatherer::gather(const PatchLists& patches, std::span<const std::uint32_t> members,
+                           const Ring* ring, PatchShape& out_shape) {
+  PatchShape& shape = out_shape;
+  shape.patch = members.front();
+  shape.faces.clear();
+  shape.corners.clear();
+  shape.points.clear();
+  shape.changed.clear();
+  shape.apex = kNothing;
+  const std::uint32_t kept = ring != nullptr ? ring->kept : kNothing;
+  const std::uint32_t removed = ring != nullptr ? ring->removed : kNothing;
+  ++vertex_turn_;
+  for (const std::uint32_t patch : members) {
+    patches.for_each(patch, [&](std::uint32_t f) {
+      if (ring != nullptr && (f == ring->edge / 3 || f == ring->twin / 3)) return;
+      Triangle local{};
+      char changed = 0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        std::uint32_t v = surface_.faces[f][i];
+        if (v == removed) v = kept;
+        if (vertex_mark_[v] != vertex_turn_) {
+          vertex_mark_[v] = vertex_turn_;
+          vertex_place_[v] = static_cast<std::uint32_t>(shape.points.size());
+          if (v == kept) shape.apex = vertex_place_[v];
+          shape.points.push_back(surface_.points[v]);
+        }
+        if (v == kept) changed = 1;
+        local[i] = vertex_place_[v];
+      }
+      shape.faces.push_back(f);
+      shape.corners.push_back(local);
+      shape.changed.push_back(changed);
+    });
+  }
+}
+
+std::uint32_t ShapeGatherer::twin_after(const Ring* ring, std::uint32_t h) const {
+  const std::uint32_t t = surface_.twin[h];
+  if (ring == nullptr || t == kNothing) return t;
+  for (const std::uint32_t e : {ring->edge, ring->twin}) {
+    if (e == kNothing || t / 3 != e / 3) continue;
+    return surface_.twin[t == Surface::next(e) ? Surface::previous(e) : Surface::next(e)];
+  }
+  return t;
+}
+
+void ShapeGatherer::index(const PatchShape& shape) {
+  ++face_turn_;
+  for (std::uint32_t i = 0; i < shape.faces.size(); ++i) {
+    face_mark_[shape.faces[i]] = face_turn_;
+    face_place_[shape.faces[i]] = i;
+  }
+}
+
+const std::vector<std::uint32_t>& ShapeGatherer::walk(const PatchShape& shape, const Ring* ring) {
+  index(shape);
+  order_.assign(1, 0);
+  seen_.assign(shape.faces.size(), 0);
+  seen_[0] = 1;
+  for (std::size_t next = 0; next < order_.size(); ++next) {
+    const std::uint32_t f = shape.faces[order_[next]];
+    for (std::uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
+      const std::uint32_t t = twin_after(ring, h);
+      const std::uint32_t g = t == kNothing ? kNothing : place(t / 3);
+      if (g == kNothing || seen_[g]) continue;
+      seen_[g] = 1;
+      order_.push_back(g);
+    }
+  }
+  return order_;
+}
+
+bool ShapeGatherer::connected(const PatchShape& shape, const Ring* ring) {
+  return shape.faces.empty() || walk(shape, ring).size() == shape.faces.size();
+}
+
+}  // namespace palpate::bake
