@@ -57,8 +57,8 @@ FaceBox box_of(const Corners& c) { return palpate::bake::box_of(c[0], c[1], c[2]
 
 const char* name_of(Refusal refusal) {
   constexpr std::array<const char*, kRefusals> kNames = {
-      "none",  "link",       "frozen", "local",      "flip",    "rounding",
-      "split", "visibility", "hull",   "other hull", "crossing"};
+      "none",     "link",       "frozen", "local",      "flip",
+      "rounding", "visibility", "hull",   "other hull", "crossing"};
   return kNames[static_cast<std::size_t>(refusal)];
 }
 
@@ -104,22 +104,7 @@ bool Constraints::is_affected(std::uint32_t patch) const {
   return false;
 }
 
-/// Both faces that go belong to the patch and joined two of its parts, of which neither surrounds
-/// an end of the edge.
-bool Constraints::may_split(std::uint32_t patch) const {
-  const Ring& ring = *ring_;
-  if (ring.twin == kNothing || patches_.of(ring.edge / 3) != patch ||
-      patches_.of(ring.twin / 3) != patch)
-    return false;
-  bool all_at_kept = ring.closed, all_at_removed = ring.closed;
-  for (const std::uint32_t s : ring.spokes) {
-    if (patches_.of(s / 3) == patch) continue;
-    (surface_.start(s) == ring.kept ? all_at_kept : all_at_removed) = false;
-  }
-  return !all_at_kept && !all_at_removed;
-}
-
-Refusal Constraints::begin(const Ring& ring) {
+void Constraints::begin(const Ring& ring) {
   ring_ = &ring;
   affected_count_ = 0;
   const auto add = [this](std::uint32_t half_edge) {
@@ -140,9 +125,8 @@ Refusal Constraints::begin(const Ring& ring) {
     if (a.closed) continue;
     const std::array<std::uint32_t, 1> one = {patch};
     gatherer_.gather(patches_, one, &ring, a.shape);
-    if (may_split(patch) && !gatherer_.connected(a.shape, &ring)) return Refusal::split;
+    a.planes.set(a.shape);
   }
-  return Refusal::none;
 }
 
 Refusal Constraints::judge(const PointF& position) {
@@ -150,10 +134,11 @@ Refusal Constraints::judge(const PointF& position) {
   if (const Refusal r = judge_faces(); r != Refusal::none) return r;
   if (const Refusal r = judge_edges(); r != Refusal::none) return r;
   for (std::size_t i = 0; i < affected_count_; ++i) {
-    PatchShape& shape = affected_[i].shape;
-    if (affected_[i].closed || shape.faces.empty()) continue;
-    shape.points[shape.apex] = position;
-    if (visible(shape)) return Refusal::visibility;
+    Affected& a = affected_[i];
+    if (a.closed || a.shape.apex == kNothing) continue;
+    a.shape.points[a.shape.apex] = position;
+    a.planes.move(a.shape.apex, position);
+    if (visible(a)) return Refusal::visibility;
   }
   for (std::size_t i = 0; i < affected_count_; ++i)
     if (hull_is_entered(affected_[i])) return Refusal::hull;
@@ -196,16 +181,14 @@ Refusal Constraints::judge_edges() const {
 }
 
 /// Some vertex is strictly above a face, and one of the two is new.
-bool Constraints::visible(const PatchShape& shape) const {
-  for (std::size_t f = 0; f < shape.faces.size(); ++f) {
-    const Triangle& t = shape.corners[f];
-    const Corners plane = {shape.points[t[0]], shape.points[t[1]], shape.points[t[2]]};
-    if (!shape.changed[f]) {
-      if (side(plane, position_) > 0) return true;
-      continue;
+bool Constraints::visible(const Affected& affected) const {
+  const PatchShape& shape = affected.shape;
+  for (std::uint32_t f = 0; f < shape.faces.size(); ++f) {
+    if (shape.changed[f]) {
+      if (affected.planes.any_point_above(shape, f)) return true;
+    } else if (affected.planes.above(shape, f, shape.apex)) {
+      return true;
     }
-    for (const PointF& p : shape.points)
-      if (side(plane, p) > 0) return true;
   }
   return false;
 }
@@ -235,8 +218,7 @@ bool Constraints::hull_is_entered(Affected& affected) {
   if (affected.kind == HullKind::empty) return false;
   if (affected.kind == HullKind::refused) return true;
   for (std::size_t i = 0; i < ring_->faces(); ++i)
-    if (patches_.of(ring_->spokes[i] / 3) != shape.patch &&
-        enters(affected.hull, corners_after(i)))
+    if (patches_.of(ring_->spokes[i] / 3) != shape.patch && enters(affected.hull, corners_after(i)))
       return true;
   return entered_by_unchanged(affected, affected.hull, palpate::bake::box_of(shape.points));
 }
@@ -316,12 +298,9 @@ bool Constraints::may_merge(std::uint32_t a, std::uint32_t b) {
   const std::array<std::uint32_t, 2> both = {a, b};
   gatherer_.gather(patches_, both, nullptr, merged_.shape);
   const PatchShape& shape = merged_.shape;
-  for (std::size_t f = 0; f < shape.faces.size(); ++f) {
-    const Triangle& t = shape.corners[f];
-    const Corners plane = {shape.points[t[0]], shape.points[t[1]], shape.points[t[2]]};
-    for (const PointF& p : shape.points)
-      if (side(plane, p) > 0) return false;
-  }
+  merged_.planes.set(shape);
+  for (std::uint32_t f = 0; f < shape.faces.size(); ++f)
+    if (merged_.planes.any_point_above(shape, f)) return false;
   merged_.kind = builder_.build(shape, nullptr, gatherer_, merged_.hull);
   if (merged_.kind == HullKind::refused) return false;
   if (merged_.kind == HullKind::empty) return true;

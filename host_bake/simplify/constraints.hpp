@@ -8,10 +8,11 @@
 #include <span>
 #include <vector>
 
-#include "host_bake/simplify/box_grid.hpp"
+#include "host_bake/simplify/box_tree.hpp"
 #include "host_bake/simplify/patch_hulls.hpp"
 #include "host_bake/simplify/patch_lists.hpp"
 #include "host_bake/simplify/patch_shape.hpp"
+#include "host_bake/simplify/shape_planes.hpp"
 #include "host_bake/simplify/surface.hpp"
 
 namespace palpate::bake {
@@ -24,13 +25,12 @@ enum class Refusal : std::uint8_t {
   local,       ///< no position meets eqs. 2 to 4
   flip,        ///< a face would turn over or lose its area
   rounding,    ///< eqs. 2 to 4 fail once the position is rounded to float
-  split,       ///< a patch would fall apart
   visibility,  ///< constraint 2
   hull,        ///< constraint 3: a face enters the hull of a changed patch
   other_hull,  ///< constraint 3: a changed face enters the hull of another patch
   crossing,    ///< the surface would cross itself
 };
-inline constexpr std::size_t kRefusals = 11;
+inline constexpr std::size_t kRefusals = 10;
 const char* name_of(Refusal refusal);
 
 /// Judges positions of the new vertex, exactly on float coordinates, and keeps what it needs for
@@ -44,7 +44,7 @@ class Constraints {
   Constraints(const Surface& surface, const PatchLists& patches);
 
   /// Begins to judge the collapse of a ring.
-  [[nodiscard]] Refusal begin(const Ring& ring);
+  void begin(const Ring& ring);
   [[nodiscard]] Refusal judge(const PointF& position);
 
   /// After the surface and the patches have been changed as judged last.
@@ -57,12 +57,12 @@ class Constraints {
  private:
   struct Affected {
     PatchShape shape;
+    ShapePlanes planes;
     ShrunkHull hull;
     HullKind kind = HullKind::unknown;
     bool closed = false;
   };
 
-  [[nodiscard]] bool may_split(std::uint32_t patch) const;
   [[nodiscard]] const PointF& at(std::uint32_t v) const {
     return v == ring_->kept || v == ring_->removed ? position_ : surface_.points[v];
   }
@@ -71,7 +71,7 @@ class Constraints {
   [[nodiscard]] bool is_affected(std::uint32_t patch) const;
   [[nodiscard]] Refusal judge_faces() const;
   [[nodiscard]] Refusal judge_edges() const;
-  [[nodiscard]] bool visible(const PatchShape& shape) const;
+  [[nodiscard]] bool visible(const Affected& affected) const;
   [[nodiscard]] bool hull_is_entered(Affected& affected);
   [[nodiscard]] bool entered_by_unchanged(const Affected& affected, ShrunkHull& hull,
                                           const FaceBox& box) const;
@@ -84,7 +84,7 @@ class Constraints {
   const PatchLists& patches_;
   ShapeGatherer gatherer_;
   HullBuilder builder_;
-  BoxGrid faces_, boxes_;
+  BoxTree faces_, boxes_;
   std::vector<std::unique_ptr<ShrunkHull>> hulls_;  // by patch, where solid
   std::vector<HullKind> kinds_;                     // by patch
 

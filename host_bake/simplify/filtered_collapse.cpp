@@ -41,8 +41,7 @@ double resolution(const Surface& surface, const Ring& ring, const RingShape& sha
     const std::size_t j = i + 1 == shape.ring.size() ? 0 : i + 1;
     normal += cross(shape.ring[i] - line.goal, shape.ring[j] - line.goal);
   }
-  const Vec3d edge =
-      position(surface.points[ring.kept]) - position(surface.points[ring.removed]);
+  const Vec3d edge = position(surface.points[ring.kept]) - position(surface.points[ring.removed]);
   const double length = norm(normal);
   if (length > 0) normal = (1 / length) * normal;
   return 1 / std::max(norm(edge - dot(edge, normal) * normal), kLeastProjection);

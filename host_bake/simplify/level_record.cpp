@@ -22,7 +22,7 @@ class PatchMaker {
  public:
   explicit PatchMaker(const NormalMesh& mesh) : mesh_(mesh), hull_(mesh.points) {}
 
-  /// faces: ascending, connected over edges.
+  /// faces: ascending.
   Patch make(const std::vector<std::uint32_t>& faces, const Surface& surface,
              const std::vector<std::uint32_t>& face_in_surface,
              const std::vector<std::uint32_t>& place_of_face, bool back_open) {
@@ -75,7 +75,13 @@ class PatchMaker {
     std::vector<std::uint32_t> order = {*seed};
     std::vector<char> seen(faces.size(), 0);
     seen[static_cast<std::size_t>(seed - faces.begin())] = 1;
-    for (std::size_t next = 0; next < order.size(); ++next) {
+    std::size_t seed_after = 0;  // patches that hang together at a vertex only need more seeds
+    for (std::size_t next = 0; order.size() < faces.size() || next < order.size(); ++next) {
+      if (next == order.size()) {
+        while (seen[seed_after] != 0) ++seed_after;
+        seen[seed_after] = 1;
+        order.push_back(faces[seed_after]);
+      }
       const std::uint32_t f = face_in_surface[order[next]];
       for (std::uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
         if (surface.twin[h] == kNothing) continue;

@@ -49,7 +49,7 @@ class PatchLists {
   void unlink(std::uint32_t face);
   void link(std::uint32_t face, std::uint32_t patch);
 
-  std::vector<std::uint32_t> of_, next_, previous_;      // by face
+  std::vector<std::uint32_t> of_, next_, previous_;         // by face
   std::vector<std::uint32_t> head_, size_, border_, heir_;  // by patch
   std::vector<char> back_open_;
   std::uint32_t living_ = 0;

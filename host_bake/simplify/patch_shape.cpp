@@ -83,24 +83,24 @@ void ShapeGatherer::index(const PatchShape& shape) {
 
 const std::vector<std::uint32_t>& ShapeGatherer::walk(const PatchShape& shape, const Ring* ring) {
   index(shape);
-  order_.assign(1, 0);
+  order_.clear();
   seen_.assign(shape.faces.size(), 0);
-  seen_[0] = 1;
-  for (std::size_t next = 0; next < order_.size(); ++next) {
-    const std::uint32_t f = shape.faces[order_[next]];
-    for (std::uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
-      const std::uint32_t t = twin_after(ring, h);
-      const std::uint32_t g = t == kNothing ? kNothing : place(t / 3);
-      if (g == kNothing || seen_[g]) continue;
-      seen_[g] = 1;
-      order_.push_back(g);
+  const auto reach = [this](std::uint32_t face) {
+    if (seen_[face] == 0) order_.push_back(face);
+    seen_[face] = 1;
+  };
+  std::size_t next = 0;
+  for (std::uint32_t seed = 0; seed < shape.faces.size(); ++seed) {
+    reach(seed);
+    for (; next < order_.size(); ++next) {
+      const std::uint32_t f = shape.faces[order_[next]];
+      for (std::uint32_t h = 3 * f; h < 3 * f + 3; ++h) {
+        const std::uint32_t t = twin_after(ring, h);
+        if (t != kNothing && place(t / 3) != kNothing) reach(place(t / 3));
+      }
     }
   }
   return order_;
-}
-
-bool ShapeGatherer::connected(const PatchShape& shape, const Ring* ring) {
-  return shape.faces.empty() || walk(shape, ring).size() == shape.faces.size();
 }
 
 }  // namespace palpate::bake

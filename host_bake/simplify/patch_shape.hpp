@@ -45,10 +45,8 @@ class ShapeGatherer {
   }
   void index(const PatchShape& shape);
 
-  /// Its faces hang together over edges. Indexes the shape.
-  bool connected(const PatchShape& shape, const Ring* ring);
-
-  /// Local faces, breadth-first from the first one over edges. Indexes the shape.
+  /// Local faces, breadth-first over edges; first all that hang together with the first one, and so
+  /// on. Indexes the shape.
   const std::vector<std::uint32_t>& walk(const PatchShape& shape, const Ring* ring);
 
  private:

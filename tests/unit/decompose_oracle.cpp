@@ -75,8 +75,13 @@ Plane plane_of(Vec a, Vec b, Vec c) {
 
 class Judge {
  public:
-  Judge(const NormalMesh& mesh, const bake::CheckReport& report, const std::vector<Patch>& patches)
-      : mesh_(mesh), report_(report), patches_(patches), patch_of_(mesh.faces.size(), kNone) {
+  Judge(const NormalMesh& mesh, const bake::CheckReport& report, const std::vector<Patch>& patches,
+        bool connected)
+      : mesh_(mesh),
+        report_(report),
+        patches_(patches),
+        connected_(connected),
+        patch_of_(mesh.faces.size(), kNone) {
     for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) by_x_.push_back(f);
     std::sort(by_x_.begin(), by_x_.end(), [&](auto a, auto b) { return low_x(a) < low_x(b); });
     for (const std::uint32_t f : by_x_) widest_ = std::max(widest_, high_x(f) - low_x(f));
@@ -190,7 +195,7 @@ class Judge {
       for (const std::uint32_t g : next_to[f])
         if (reached.insert(g).second) stack.push_back(g);
     }
-    return reached.size() == patch.faces.size() ? "" : "not connected";
+    return !connected_ || reached.size() == patch.faces.size() ? "" : "not connected";
   }
 
   /// Constraint 2.
@@ -345,6 +350,7 @@ class Judge {
   const NormalMesh& mesh_;
   const bake::CheckReport& report_;
   const std::vector<Patch>& patches_;
+  const bool connected_;
   std::vector<std::uint32_t> patch_of_, by_x_;
   float widest_ = 0;
   std::vector<char> area_;
@@ -480,8 +486,8 @@ std::string judge_hull(std::span<const PointF> points, const HullMesh& hull) {
 }
 
 std::string judge_patches(const NormalMesh& mesh, const bake::CheckReport& report,
-                          const std::vector<Patch>& patches) {
-  return Judge(mesh, report, patches).run();
+                          const std::vector<Patch>& patches, bool connected) {
+  return Judge(mesh, report, patches, connected).run();
 }
 
 }  // namespace palpate::test

@@ -25,8 +25,8 @@ bool in_line(const bake::PointF& a, const bake::PointF& b, const bake::PointF& c
 std::string judge_hull(std::span<const bake::PointF> points, const bake::HullMesh& hull);
 
 /// What is wrong with a decomposition, or nothing: the partition, the three constraints, hulls,
-/// virtual faces, flags.
+/// virtual faces, flags; with `connected` also that the faces of a patch hang together over edges.
 std::string judge_patches(const bake::NormalMesh& mesh, const bake::CheckReport& report,
-                          const std::vector<bake::Patch>& patches);
+                          const std::vector<bake::Patch>& patches, bool connected = true);
 
 }  // namespace palpate::test
