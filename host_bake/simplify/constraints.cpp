@@ -142,6 +142,7 @@ Refusal Constraints::judge(const PointF& position) {
   }
   for (std::size_t i = 0; i < affected_count_; ++i)
     if (hull_is_entered(affected_[i])) return Refusal::hull;
+  set_star();
   if (enters_others()) return Refusal::other_hull;
   return crosses() ? Refusal::crossing : Refusal::none;
 }
@@ -234,35 +235,43 @@ ShrunkHull* Constraints::hull_of(std::uint32_t patch) {
   return hulls_[patch].get();
 }
 
-bool Constraints::enters_others() {
+/// The changed faces, and a box about them all.
+void Constraints::set_star() {
+  star_.clear();
+  star_box_ = palpate::bake::box_of(position_, position_, position_);
   for (std::size_t i = 0; i < ring_->faces(); ++i) {
     const Corners now = corners_after(i);
-    const bool entered = boxes_.search(box_of(now), [&](std::uint32_t patch) {
-      if (is_affected(patch) || patches_.closed(patch)) return false;
-      ShrunkHull* hull = hull_of(patch);
-      return hull != nullptr && enters(*hull, now);
-    });
-    if (entered) return true;
+    star_.push_back({now, box_of(now), patches_.of(ring_->spokes[i] / 3)});
+    for (const PointF& p : now) star_box_.add(p);
   }
-  return false;
+}
+
+bool Constraints::enters_others() {
+  return boxes_.search(star_box_, [&](std::uint32_t patch) {
+    if (is_affected(patch) || patches_.closed(patch)) return false;
+    const FaceBox& box = boxes_.box(patch);
+    return std::any_of(star_.begin(), star_.end(), [&](const StarFace& face) {
+      if (!face.box.meets(box)) return false;
+      ShrunkHull* hull = hull_of(patch);
+      return hull != nullptr && enters(*hull, face.corners);
+    });
+  });
 }
 
 bool Constraints::crosses() const {
-  for (std::size_t i = 0; i < ring_->faces(); ++i) {
-    const Corners now = corners_after(i);
-    const std::uint32_t patch = patches_.of(ring_->spokes[i] / 3);
+  for (std::size_t i = 1; i < star_.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (patches_.of(ring_->spokes[j] / 3) != patch && cross_each_other(now, corners_after(j)))
+      if (star_[i].patch != star_[j].patch && cross_each_other(star_[i].corners, star_[j].corners))
         return true;
-    const bool crossed = faces_.search(box_of(now), [&](std::uint32_t f) {
-      if (patches_.of(f) == patch) return false;
-      for (const std::uint32_t v : surface_.faces[f])
-        if (v == ring_->kept || v == ring_->removed) return false;
-      return cross_each_other(now, corners(f));
+  return faces_.search(star_box_, [&](std::uint32_t f) {
+    for (const std::uint32_t v : surface_.faces[f])
+      if (v == ring_->kept || v == ring_->removed) return false;
+    const FaceBox& box = faces_.box(f);
+    return std::any_of(star_.begin(), star_.end(), [&](const StarFace& face) {
+      return face.patch != patches_.of(f) && face.box.meets(box) &&
+             cross_each_other(face.corners, corners(f));
     });
-    if (crossed) return true;
-  }
-  return false;
+  });
 }
 
 void Constraints::follow_collapse() {

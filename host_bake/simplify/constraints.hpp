@@ -63,9 +63,12 @@ class Constraints {
     bool closed = false;
   };
 
-  [[nodiscard]] const PointF& at(std::uint32_t v) const {
-    return v == ring_->kept || v == ring_->removed ? position_ : surface_.points[v];
-  }
+  struct StarFace {
+    std::array<PointF, 3> corners;
+    FaceBox box;
+    std::uint32_t patch;
+  };
+
   [[nodiscard]] std::array<PointF, 3> corners_after(std::size_t ring_face) const;
   [[nodiscard]] std::array<PointF, 3> corners(std::uint32_t face) const;
   [[nodiscard]] bool is_affected(std::uint32_t patch) const;
@@ -75,6 +78,7 @@ class Constraints {
   [[nodiscard]] bool hull_is_entered(Affected& affected);
   [[nodiscard]] bool entered_by_unchanged(const Affected& affected, ShrunkHull& hull,
                                           const FaceBox& box) const;
+  void set_star();
   [[nodiscard]] bool enters_others();
   [[nodiscard]] bool crosses() const;
   [[nodiscard]] ShrunkHull* hull_of(std::uint32_t patch);
@@ -92,6 +96,8 @@ class Constraints {
   PointF position_{};
   std::vector<Affected> affected_;
   std::size_t affected_count_ = 0;
+  std::vector<StarFace> star_;
+  FaceBox star_box_;
   Affected merged_;
   PatchShape other_;
 };
