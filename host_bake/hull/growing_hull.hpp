@@ -63,6 +63,8 @@ class GrowingHull {
   void rollback(Mark mark);
   void commit();
 
+  /// Slots of the facets that vertices added since the last commit() have replaced.
+  [[nodiscard]] std::span<const std::uint32_t> replaced() const { return removed_; }
   /// A vertex was added since the last commit().
   [[nodiscard]] bool grown() const { return !added_.empty(); }
   [[nodiscard]] bool flat() const { return flat_; }

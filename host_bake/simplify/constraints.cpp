@@ -14,6 +14,9 @@ namespace {
 
 using Corners = std::array<PointF, 3>;
 
+// Faces from which on a collapse inside a patch is judged by the virtual facets alone.
+constexpr std::size_t kLargePatch = 48;
+
 int side(const Corners& plane, const PointF& p) {
   if (p == plane[0] || p == plane[1] || p == plane[2]) return 0;
   return orient_3d(plane[0], plane[1], plane[2], p);
@@ -66,11 +69,11 @@ Constraints::Constraints(const Surface& surface, const PatchLists& patches)
     : surface_(surface),
       patches_(patches),
       gatherer_(surface),
-      builder_(surface),
       faces_(surface.faces.size()),
       boxes_(patches.count()),
       hulls_(patches.count()),
-      kinds_(patches.count(), HullKind::unknown) {
+      kinds_(patches.count(), HullKind::unknown),
+      facets_(patches.count()) {
   for (std::uint32_t f = 0; f < surface.faces.size(); ++f) faces_.put(f, box_of(corners(f)));
   for (std::uint32_t p = 0; p < patches.count(); ++p) {
     const std::array<std::uint32_t, 1> one = {p};
@@ -122,6 +125,8 @@ void Constraints::begin(const Ring& ring) {
     const std::uint32_t patch = a.shape.patch;
     a.kind = HullKind::unknown;
     a.closed = patches_.closed(patch);
+    a.inner = affected_count_ == 1;
+    a.locally = false;
     if (a.closed) continue;
     const std::array<std::uint32_t, 1> one = {patch};
     gatherer_.gather(patches_, one, &ring, a.shape);
@@ -206,22 +211,40 @@ bool Constraints::entered_by_unchanged(const Affected& affected, ShrunkHull& hul
   });
 }
 
+/// The virtual facets stay as they are: the collapse is inside a large patch and below them.
+bool Constraints::grows_locally(const Affected& affected) {
+  if (affected.closed) return true;
+  const std::uint32_t patch = affected.shape.patch;
+  if (!affected.inner || affected.shape.faces.size() < kLargePatch) return false;
+  if (!facets_[patch]) {
+    kinds_[patch] = HullKind::unknown;  // facets are found with the hull
+    if (hull_of(patch) == nullptr) return false;
+  }
+  const VirtualFacets& facets = *facets_[patch];
+  return !facets.has_corner(ring_->kept) && !facets.has_corner(ring_->removed) &&
+         facets.clearly_below(position_);
+}
+
+bool Constraints::grown_part_is_entered(Affected& affected) {
+  std::vector<PointF> points = {position_};
+  for (const std::uint32_t v : ring_->vertices) points.push_back(surface_.points[v]);
+  if (builder_.build(points, affected.hull) == HullKind::empty) return false;
+  return entered_by_unchanged(affected, affected.hull, palpate::bake::box_of(points));
+}
+
 bool Constraints::hull_is_entered(Affected& affected) {
   const PatchShape& shape = affected.shape;
-  if (affected.closed) {
-    std::vector<PointF> points = {position_};
-    for (const std::uint32_t v : ring_->vertices) points.push_back(surface_.points[v]);
-    if (builder_.build(points, affected.hull) == HullKind::empty) return false;
-    return entered_by_unchanged(affected, affected.hull, palpate::bake::box_of(points));
-  }
+  affected.locally = grows_locally(affected);
+  if (affected.locally) return grown_part_is_entered(affected);
   if (shape.faces.empty()) return false;
-  affected.kind = builder_.build(shape, ring_, gatherer_, affected.hull);
+  FaceBox grown;
+  affected.kind = builder_.build(shape, ring_, gatherer_, affected.hull, grown);
   if (affected.kind == HullKind::empty) return false;
   if (affected.kind == HullKind::refused) return true;
   for (std::size_t i = 0; i < ring_->faces(); ++i)
     if (patches_.of(ring_->spokes[i] / 3) != shape.patch && enters(affected.hull, corners_after(i)))
       return true;
-  return entered_by_unchanged(affected, affected.hull, palpate::bake::box_of(shape.points));
+  return entered_by_unchanged(affected, affected.hull, grown);
 }
 
 ShrunkHull* Constraints::hull_of(std::uint32_t patch) {
@@ -229,8 +252,14 @@ ShrunkHull* Constraints::hull_of(std::uint32_t patch) {
     const std::array<std::uint32_t, 1> one = {patch};
     gatherer_.gather(patches_, one, nullptr, other_);
     if (!hulls_[patch]) hulls_[patch] = std::make_unique<ShrunkHull>();
-    kinds_[patch] = builder_.build(other_, nullptr, gatherer_, *hulls_[patch]);
-    if (kinds_[patch] != HullKind::solid) hulls_[patch].reset();
+    FaceBox all;
+    kinds_[patch] = builder_.build(other_, nullptr, gatherer_, *hulls_[patch], all);
+    if (kinds_[patch] != HullKind::solid) {
+      hulls_[patch].reset();
+    } else if (other_.faces.size() >= kLargePatch) {
+      facets_[patch] = std::make_unique<VirtualFacets>();
+      facets_[patch]->set(other_, builder_.last());
+    }
   }
   return hulls_[patch].get();
 }
@@ -252,6 +281,7 @@ bool Constraints::enters_others() {
     const FaceBox& box = boxes_.box(patch);
     return std::any_of(star_.begin(), star_.end(), [&](const StarFace& face) {
       if (!face.box.meets(box)) return false;
+      if (facets_[patch] && facets_[patch]->separate(face.corners)) return false;
       ShrunkHull* hull = hull_of(patch);
       return hull != nullptr && enters(*hull, face.corners);
     });
@@ -281,7 +311,8 @@ void Constraints::follow_collapse() {
   for (std::size_t i = 0; i < affected_count_; ++i) {
     Affected& a = affected_[i];
     const std::uint32_t patch = a.shape.patch;
-    kinds_[patch] = a.closed ? HullKind::unknown : a.kind;
+    kinds_[patch] = a.locally ? HullKind::unknown : a.kind;
+    if (!a.locally) facets_[patch].reset();
     if (a.closed) {
       FaceBox box = boxes_.box(patch);  // may be too large from now on, never too small
       box.add(position_);
@@ -294,7 +325,7 @@ void Constraints::follow_collapse() {
       continue;
     }
     place(patch, palpate::bake::box_of(a.shape.points));
-    if (a.kind == HullKind::solid) {
+    if (kinds_[patch] == HullKind::solid) {
       if (!hulls_[patch]) hulls_[patch] = std::make_unique<ShrunkHull>();
       std::swap(*hulls_[patch], a.hull);
     } else {
@@ -310,10 +341,11 @@ bool Constraints::may_merge(std::uint32_t a, std::uint32_t b) {
   merged_.planes.set(shape);
   for (std::uint32_t f = 0; f < shape.faces.size(); ++f)
     if (merged_.planes.any_point_above(shape, f)) return false;
-  merged_.kind = builder_.build(shape, nullptr, gatherer_, merged_.hull);
+  FaceBox all;
+  merged_.kind = builder_.build(shape, nullptr, gatherer_, merged_.hull, all);
   if (merged_.kind == HullKind::refused) return false;
   if (merged_.kind == HullKind::empty) return true;
-  return !faces_.search(palpate::bake::box_of(shape.points), [&](std::uint32_t f) {
+  return !faces_.search(all, [&](std::uint32_t f) {
     return patches_.of(f) != a && patches_.of(f) != b && enters(merged_.hull, corners(f));
   });
 }
@@ -323,6 +355,8 @@ void Constraints::follow_merge(std::uint32_t kept, std::uint32_t gone) {
   hulls_[gone].reset();
   place(kept, palpate::bake::box_of(merged_.shape.points));
   kinds_[kept] = merged_.kind;
+  facets_[kept].reset();
+  facets_[gone].reset();
   if (merged_.kind == HullKind::solid) {
     if (!hulls_[kept]) hulls_[kept] = std::make_unique<ShrunkHull>();
     std::swap(*hulls_[kept], merged_.hull);

@@ -14,6 +14,7 @@
 #include "host_bake/simplify/patch_shape.hpp"
 #include "host_bake/simplify/shape_planes.hpp"
 #include "host_bake/simplify/surface.hpp"
+#include "host_bake/simplify/virtual_facets.hpp"
 
 namespace palpate::bake {
 
@@ -61,6 +62,8 @@ class Constraints {
     ShrunkHull hull;
     HullKind kind = HullKind::unknown;
     bool closed = false;
+    bool inner = false;   // all that changes belongs to the patch
+    bool locally = false;  // the last judgement did without the whole hull
   };
 
   struct StarFace {
@@ -81,6 +84,8 @@ class Constraints {
   void set_star();
   [[nodiscard]] bool enters_others();
   [[nodiscard]] bool crosses() const;
+  [[nodiscard]] bool grows_locally(const Affected& affected);
+  [[nodiscard]] bool grown_part_is_entered(Affected& affected);
   [[nodiscard]] ShrunkHull* hull_of(std::uint32_t patch);
   void place(std::uint32_t patch, const FaceBox& box);
 
@@ -91,6 +96,7 @@ class Constraints {
   BoxTree faces_, boxes_;
   std::vector<std::unique_ptr<ShrunkHull>> hulls_;  // by patch, where solid
   std::vector<HullKind> kinds_;                     // by patch
+  std::vector<std::unique_ptr<VirtualFacets>> facets_;  // by patch, of large ones
 
   const Ring* ring_ = nullptr;
   PointF position_{};

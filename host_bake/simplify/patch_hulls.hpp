@@ -21,23 +21,31 @@ enum class HullKind : std::uint8_t {
 /// Builds hulls of shapes, with the scratch that takes.
 class HullBuilder {
  public:
-  explicit HullBuilder(const Surface& surface) : surface_(surface) {}
-
-  /// The hull of all points of a shape. O(n) expected for convex patches.
+    /// The hull of all points of a shape. O(n) expected for convex patches.
+  /// @param out_grown  where the hull's interior, shrunk, may reach beyond that of the hull without
+  ///                   the new vertex; everywhere where the shape has no new vertex
   HullKind build(const PatchShape& shape, const Ring* ring, ShapeGatherer& gatherer,
-                 ShrunkHull& out_hull);
+                 ShrunkHull& out_hull, FaceBox& out_grown);
 
   /// The hull of the points alone; empty where flat.
   HullKind build(std::span<const PointF> points, ShrunkHull& out_hull);
 
+  /// Of the solid hull built last.
+  [[nodiscard]] const GrowingHull& last() const { return *hull_; }
+
  private:
-  [[nodiscard]] bool start(std::span<const PointF> points, std::span<const Triangle> faces);
-  void insert_all(std::size_t points);
-  void insert_walking(const PatchShape& shape, const std::vector<std::uint32_t>& order);
+  [[nodiscard]] bool start(std::span<const PointF> points, std::span<const Triangle> faces,
+                           std::uint32_t without);
+  void insert_all(std::size_t points, std::uint32_t without);
+  void insert_walking(const PatchShape& shape, const std::vector<std::uint32_t>& order,
+                      std::uint32_t without);
+  void insert(const PatchShape& shape, const Ring* ring, ShapeGatherer& gatherer,
+              std::uint32_t without);
+  [[nodiscard]] bool insert_apex_last(const PatchShape& shape, const Ring* ring,
+                                      ShapeGatherer& gatherer, FaceBox& out_grown);
   [[nodiscard]] bool fills_polygon(const PatchShape& shape, const Ring* ring,
                                    ShapeGatherer& gatherer);
 
-  const Surface& surface_;
   std::vector<PointF> points_;  // what hull_ spans
   std::optional<GrowingHull> hull_;
 };

@@ -34,6 +34,7 @@ void ShapeGatherer::gather(const PatchLists& patches, std::span<const std::uint3
   shape.faces.clear();
   shape.corners.clear();
   shape.points.clear();
+  shape.vertices.clear();
   shape.changed.clear();
   shape.apex = kNothing;
   const std::uint32_t kept = ring != nullptr ? ring->kept : kNothing;
@@ -52,6 +53,7 @@ void ShapeGatherer::gather(const PatchLists& patches, std::span<const std::uint3
           vertex_place_[v] = static_cast<std::uint32_t>(shape.points.size());
           if (v == kept) shape.apex = vertex_place_[v];
           shape.points.push_back(surface_.points[v]);
+          shape.vertices.push_back(v);
         }
         if (v == kept) changed = 1;
         local[i] = vertex_place_[v];

@@ -18,6 +18,7 @@ struct PatchShape {
   std::vector<std::uint32_t> faces;  ///< of the surface
   std::vector<Triangle> corners;     ///< [faces] local vertices
   std::vector<PointF> points;        ///< of the local vertices
+  std::vector<std::uint32_t> vertices;  ///< [points] of the surface
   std::vector<char> changed;         ///< [faces] has the new vertex as a corner
   std::uint32_t apex = kNothing;     ///< the new vertex, local
 };
