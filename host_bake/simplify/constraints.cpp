@@ -189,9 +189,10 @@ Refusal Constraints::judge_edges() const {
 /// Some vertex is strictly above a face, and one of the two is new.
 bool Constraints::visible(const Affected& affected) const {
   const PatchShape& shape = affected.shape;
+  const auto points = static_cast<std::uint32_t>(shape.points.size());
   for (std::uint32_t f = 0; f < shape.faces.size(); ++f) {
     if (shape.changed[f]) {
-      if (affected.planes.any_point_above(shape, f)) return true;
+      if (affected.planes.any_above(shape, f, 0, points)) return true;
     } else if (affected.planes.above(shape, f, shape.apex)) {
       return true;
     }
@@ -251,12 +252,14 @@ ShrunkHull* Constraints::hull_of(std::uint32_t patch) {
   if (kinds_[patch] == HullKind::unknown) {
     const std::array<std::uint32_t, 1> one = {patch};
     gatherer_.gather(patches_, one, nullptr, other_);
-    if (!hulls_[patch]) hulls_[patch] = std::make_unique<ShrunkHull>();
     FaceBox all;
-    kinds_[patch] = builder_.build(other_, nullptr, gatherer_, *hulls_[patch], all);
+    kinds_[patch] = builder_.build(other_, nullptr, gatherer_, other_hull_, all);
     if (kinds_[patch] != HullKind::solid) {
       hulls_[patch].reset();
-    } else if (other_.faces.size() >= kLargePatch) {
+      return nullptr;
+    }
+    hulls_[patch] = std::make_unique<ShrunkHull>(other_hull_);  // without the scratch's capacity
+    if (other_.faces.size() >= kLargePatch) {
       facets_[patch] = std::make_unique<VirtualFacets>();
       facets_[patch]->set(other_, builder_.last());
     }
@@ -326,21 +329,36 @@ void Constraints::follow_collapse() {
     }
     place(patch, palpate::bake::box_of(a.shape.points));
     if (kinds_[patch] == HullKind::solid) {
-      if (!hulls_[patch]) hulls_[patch] = std::make_unique<ShrunkHull>();
-      std::swap(*hulls_[patch], a.hull);
+      hulls_[patch] = std::make_unique<ShrunkHull>(a.hull);
     } else {
       hulls_[patch].reset();
     }
   }
 }
 
-bool Constraints::may_merge(std::uint32_t a, std::uint32_t b) {
+/// Each of two patches is below its own planes; is it below the other's? Tells first for the faces
+/// of the smaller one.
+bool Constraints::below_each_other(std::uint32_t a, std::uint32_t b) {
+  if (patches_.size(a) < patches_.size(b)) std::swap(a, b);
   const std::array<std::uint32_t, 2> both = {a, b};
   gatherer_.gather(patches_, both, nullptr, merged_.shape);
   const PatchShape& shape = merged_.shape;
+  const std::uint32_t faces = patches_.size(a);
+  std::uint32_t points = 0;  // of the larger patch: they come first
+  for (std::uint32_t f = 0; f < faces; ++f)
+    for (const std::uint32_t v : shape.corners[f]) points = std::max(points, v + 1);
   merged_.planes.set(shape);
-  for (std::uint32_t f = 0; f < shape.faces.size(); ++f)
-    if (merged_.planes.any_point_above(shape, f)) return false;
+  const auto all = static_cast<std::uint32_t>(shape.points.size());
+  for (auto f = faces; f < shape.faces.size(); ++f)
+    if (merged_.planes.any_above(shape, f, 0, points)) return false;
+  for (std::uint32_t f = 0; f < faces; ++f)
+    if (merged_.planes.any_above(shape, f, points, all)) return false;
+  return true;
+}
+
+bool Constraints::may_merge(std::uint32_t a, std::uint32_t b) {
+  if (!below_each_other(a, b)) return false;
+  const PatchShape& shape = merged_.shape;
   FaceBox all;
   merged_.kind = builder_.build(shape, nullptr, gatherer_, merged_.hull, all);
   if (merged_.kind == HullKind::refused) return false;
@@ -358,8 +376,7 @@ void Constraints::follow_merge(std::uint32_t kept, std::uint32_t gone) {
   facets_[kept].reset();
   facets_[gone].reset();
   if (merged_.kind == HullKind::solid) {
-    if (!hulls_[kept]) hulls_[kept] = std::make_unique<ShrunkHull>();
-    std::swap(*hulls_[kept], merged_.hull);
+    hulls_[kept] = std::make_unique<ShrunkHull>(merged_.hull);
   } else {
     hulls_[kept].reset();
   }

@@ -62,7 +62,7 @@ class Constraints {
     ShrunkHull hull;
     HullKind kind = HullKind::unknown;
     bool closed = false;
-    bool inner = false;   // all that changes belongs to the patch
+    bool inner = false;    // all that changes belongs to the patch
     bool locally = false;  // the last judgement did without the whole hull
   };
 
@@ -82,6 +82,7 @@ class Constraints {
   [[nodiscard]] bool entered_by_unchanged(const Affected& affected, ShrunkHull& hull,
                                           const FaceBox& box) const;
   void set_star();
+  [[nodiscard]] bool below_each_other(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] bool enters_others();
   [[nodiscard]] bool crosses() const;
   [[nodiscard]] bool grows_locally(const Affected& affected);
@@ -94,8 +95,8 @@ class Constraints {
   ShapeGatherer gatherer_;
   HullBuilder builder_;
   BoxTree faces_, boxes_;
-  std::vector<std::unique_ptr<ShrunkHull>> hulls_;  // by patch, where solid
-  std::vector<HullKind> kinds_;                     // by patch
+  std::vector<std::unique_ptr<ShrunkHull>> hulls_;      // by patch, where solid
+  std::vector<HullKind> kinds_;                         // by patch
   std::vector<std::unique_ptr<VirtualFacets>> facets_;  // by patch, of large ones
 
   const Ring* ring_ = nullptr;
@@ -106,6 +107,7 @@ class Constraints {
   FaceBox star_box_;
   Affected merged_;
   PatchShape other_;
+  ShrunkHull other_hull_;
 };
 
 }  // namespace palpate::bake

@@ -21,7 +21,7 @@ enum class HullKind : std::uint8_t {
 /// Builds hulls of shapes, with the scratch that takes.
 class HullBuilder {
  public:
-    /// The hull of all points of a shape. O(n) expected for convex patches.
+  /// The hull of all points of a shape. O(n) expected for convex patches.
   /// @param out_grown  where the hull's interior, shrunk, may reach beyond that of the hull without
   ///                   the new vertex; everywhere where the shape has no new vertex
   HullKind build(const PatchShape& shape, const Ring* ring, ShapeGatherer& gatherer,

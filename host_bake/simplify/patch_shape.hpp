@@ -15,12 +15,12 @@ namespace palpate::bake {
 
 struct PatchShape {
   std::uint32_t patch = kNothing;
-  std::vector<std::uint32_t> faces;  ///< of the surface
-  std::vector<Triangle> corners;     ///< [faces] local vertices
-  std::vector<PointF> points;        ///< of the local vertices
+  std::vector<std::uint32_t> faces;     ///< of the surface
+  std::vector<Triangle> corners;        ///< [faces] local vertices
+  std::vector<PointF> points;           ///< of the local vertices
   std::vector<std::uint32_t> vertices;  ///< [points] of the surface
-  std::vector<char> changed;         ///< [faces] has the new vertex as a corner
-  std::uint32_t apex = kNothing;     ///< the new vertex, local
+  std::vector<char> changed;            ///< [faces] has the new vertex as a corner
+  std::uint32_t apex = kNothing;        ///< the new vertex, local
 };
 
 FaceBox box_of(std::span<const PointF> points);

@@ -48,9 +48,10 @@ bool ShapePlanes::above(const PatchShape& shape, std::uint32_t face, std::uint32
   return above(shape, planes_[face], face, point, points_[point]);
 }
 
-bool ShapePlanes::any_point_above(const PatchShape& shape, std::uint32_t face) const {
+bool ShapePlanes::any_above(const PatchShape& shape, std::uint32_t face, std::uint32_t first,
+                            std::uint32_t last) const {
   const Plane plane = plane_of(shape, face);
-  for (std::uint32_t p = 0; p < points_.size(); ++p)
+  for (std::uint32_t p = first; p < last; ++p)
     if (above(shape, plane, face, p, points_[p])) return true;
   return false;
 }

@@ -21,8 +21,9 @@ class ShapePlanes {
 
   /// Point strictly above an unmoved face.
   [[nodiscard]] bool above(const PatchShape& shape, std::uint32_t face, std::uint32_t point) const;
-  /// Any point strictly above a face, which may have moved. O(points).
-  [[nodiscard]] bool any_point_above(const PatchShape& shape, std::uint32_t face) const;
+  /// Any of the points first, ..., last - 1 strictly above a face, which may have moved.
+  [[nodiscard]] bool any_above(const PatchShape& shape, std::uint32_t face, std::uint32_t first,
+                               std::uint32_t last) const;
 
  private:
   struct Plane {

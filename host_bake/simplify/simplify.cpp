@@ -189,9 +189,7 @@ Refusal Simplifier::attempt(std::uint32_t h) {
   for (const Vec3d initial : {initial_position(ring_), position(surface_.points[ring_.kept]),
                               position(surface_.points[ring_.removed])}) {
     refusal = try_start(initial);
-    const bool of_the_start =
-        refusal == Refusal::local || refusal == Refusal::rounding || refusal == Refusal::flip;
-    if (!of_the_start) break;
+    if (refusal == Refusal::none) break;
   }
   return refusal;
 }
