@@ -178,6 +178,12 @@ bool ShrunkHull::cut_by_all() {
   return true;
 }
 
+bool ShrunkHull::holds(Vec3d p) const {
+  return std::all_of(planes_.begin(), planes_.end(), [p](const Plane& plane) {
+    return dot(plane.normal, p) - plane.offset <= kShrink_rel;
+  });
+}
+
 bool ShrunkHull::entered_by(Vec3d a, Vec3d b, Vec3d c) {
   polygon_ = {a, b, c};
   return cut_toward_centre() && cut_by_all();

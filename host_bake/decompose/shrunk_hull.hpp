@@ -27,6 +27,9 @@ class ShrunkHull {
   /// thin ones are less than 4 kShrink_rel thick.
   [[nodiscard]] bool thin() const { return thin_; }
 
+  /// The point is in the hull (not shrunk). O(facets).
+  [[nodiscard]] bool holds(Vec3d p) const;
+
   /// Surely nothing in the box enters. False decides nothing.
   [[nodiscard]] bool surely_outside(const FaceBox& box);
 

@@ -233,8 +233,26 @@ bool Constraints::grown_part_is_entered(Affected& affected) {
   return entered_by_unchanged(affected, affected.hull, palpate::bake::box_of(points));
 }
 
+/// The new vertex is inside the hull known before, so nothing but changed faces of others can enter
+/// the new one.
+bool Constraints::stays_within(const Affected& affected) {
+  const PatchShape& shape = affected.shape;
+  const std::uint32_t patch = shape.patch;
+  if (affected.closed || shape.faces.empty()) return false;
+  if (kinds_[patch] != HullKind::solid && kinds_[patch] != HullKind::outer) return false;
+  ShrunkHull& hull = *hulls_[patch];
+  if (hull.thin() || !hull.holds(palpate::bake::position(position_))) return false;
+  if (!clearly_solid(shape.points)) return false;  // else it must fill a polygon
+  for (std::size_t i = 0; i < ring_->faces(); ++i)
+    if (patches_.of(ring_->spokes[i] / 3) != patch && enters(hull, corners_after(i))) return false;
+  return true;
+}
+
 bool Constraints::hull_is_entered(Affected& affected) {
   const PatchShape& shape = affected.shape;
+  affected.locally = false;
+  affected.within = stays_within(affected);
+  if (affected.within) return false;
   affected.locally = grows_locally(affected);
   if (affected.locally) return grown_part_is_entered(affected);
   if (shape.faces.empty()) return false;
@@ -285,10 +303,18 @@ bool Constraints::enters_others() {
     return std::any_of(star_.begin(), star_.end(), [&](const StarFace& face) {
       if (!face.box.meets(box)) return false;
       if (facets_[patch] && facets_[patch]->separate(face.corners)) return false;
-      ShrunkHull* hull = hull_of(patch);
-      return hull != nullptr && enters(*hull, face.corners);
+      return is_entered(patch, face.corners);
     });
   });
+}
+
+bool Constraints::is_entered(std::uint32_t patch, const Corners& face) {
+  ShrunkHull* hull = hull_of(patch);
+  if (hull == nullptr || !enters(*hull, face)) return false;
+  if (kinds_[patch] != HullKind::outer) return true;
+  kinds_[patch] = HullKind::unknown;
+  hull = hull_of(patch);
+  return hull != nullptr && enters(*hull, face);
 }
 
 bool Constraints::crosses() const {
@@ -314,7 +340,7 @@ void Constraints::follow_collapse() {
   for (std::size_t i = 0; i < affected_count_; ++i) {
     Affected& a = affected_[i];
     const std::uint32_t patch = a.shape.patch;
-    kinds_[patch] = a.locally ? HullKind::unknown : a.kind;
+    kinds_[patch] = a.within ? HullKind::outer : a.locally ? HullKind::unknown : a.kind;
     if (!a.locally) facets_[patch].reset();
     if (a.closed) {
       FaceBox box = boxes_.box(patch);  // may be too large from now on, never too small
@@ -330,7 +356,7 @@ void Constraints::follow_collapse() {
     place(patch, palpate::bake::box_of(a.shape.points));
     if (kinds_[patch] == HullKind::solid) {
       hulls_[patch] = std::make_unique<ShrunkHull>(a.hull);
-    } else {
+    } else if (kinds_[patch] != HullKind::outer) {
       hulls_[patch].reset();
     }
   }

@@ -64,6 +64,7 @@ class Constraints {
     bool closed = false;
     bool inner = false;    // all that changes belongs to the patch
     bool locally = false;  // the last judgement did without the whole hull
+    bool within = false;   // the hull known before holds the new one
   };
 
   struct StarFace {
@@ -85,6 +86,8 @@ class Constraints {
   [[nodiscard]] bool below_each_other(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] bool enters_others();
   [[nodiscard]] bool crosses() const;
+  [[nodiscard]] bool stays_within(const Affected& affected);
+  [[nodiscard]] bool is_entered(std::uint32_t patch, const std::array<PointF, 3>& corners);
   [[nodiscard]] bool grows_locally(const Affected& affected);
   [[nodiscard]] bool grown_part_is_entered(Affected& affected);
   [[nodiscard]] ShrunkHull* hull_of(std::uint32_t patch);

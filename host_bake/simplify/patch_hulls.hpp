@@ -15,6 +15,7 @@ enum class HullKind : std::uint8_t {
   unknown,
   empty,    ///< no interior, and the patch fills it: nothing can enter
   solid,    ///< ask the ShrunkHull
+  outer,    ///< the ShrunkHull holds the patch's hull, and nothing enters it so far
   refused,  ///< no interior, but the patch does not fill it
 };
 

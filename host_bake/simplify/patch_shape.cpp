@@ -1,10 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "host_bake/simplify/patch_shape.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
+
+#include "host_bake/decompose/geometry.hpp"
 
 namespace palpate::bake {
+
+bool clearly_solid(std::span<const PointF> points) {
+  constexpr double kThick = 1e-5;
+  const Vec3d origin = position(points.front());
+  const auto farthest = [&](auto measure) {
+    Vec3d best{};
+    double most = 0;
+    for (const PointF& p : points) {
+      const Vec3d d = position(p) - origin;
+      if (const double m = measure(d); m > most) {
+        most = m;
+        best = d;
+      }
+    }
+    return std::pair(most, best);
+  };
+  const auto [length, along] = farthest([](Vec3d d) { return norm(d); });
+  if (length < kThick) return false;
+  const auto [width, aside] = farthest([&](Vec3d d) { return norm(cross(along, d)) / length; });
+  if (width < kThick) return false;
+  const Vec3d n = cross(along, aside);
+  const auto [height, above] = farthest([&](Vec3d d) { return std::abs(dot(n, d)) / norm(n); });
+  return height > kThick;
+}
 
 FaceBox box_of(std::span<const PointF> points) {
   constexpr float kFar = std::numeric_limits<float>::infinity();

@@ -23,6 +23,9 @@ struct PatchShape {
   std::uint32_t apex = kNothing;        ///< the new vertex, local
 };
 
+/// The points do not lie near a plane: their hull is far thicker than kShrink_rel. O(points).
+bool clearly_solid(std::span<const PointF> points);
+
 FaceBox box_of(std::span<const PointF> points);
 FaceBox box_of(const PointF& a, const PointF& b, const PointF& c);
 
