@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <utility>
 
 #include "host_bake/decompose/geometry.hpp"
 
@@ -13,25 +12,24 @@ namespace palpate::bake {
 bool clearly_solid(std::span<const PointF> points) {
   constexpr double kThick = 1e-5;
   const Vec3d origin = position(points.front());
+  struct Farthest {
+    double measure = 0;
+    Vec3d offset{};
+  };
   const auto farthest = [&](auto measure) {
-    Vec3d best{};
-    double most = 0;
+    Farthest best;
     for (const PointF& p : points) {
       const Vec3d d = position(p) - origin;
-      if (const double m = measure(d); m > most) {
-        most = m;
-        best = d;
-      }
+      if (const double m = measure(d); m > best.measure) best = {m, d};
     }
-    return std::pair(most, best);
+    return best;
   };
-  const auto [length, along] = farthest([](Vec3d d) { return norm(d); });
-  if (length < kThick) return false;
-  const auto [width, aside] = farthest([&](Vec3d d) { return norm(cross(along, d)) / length; });
-  if (width < kThick) return false;
-  const Vec3d n = cross(along, aside);
-  const auto [height, above] = farthest([&](Vec3d d) { return std::abs(dot(n, d)) / norm(n); });
-  return height > kThick;
+  const Farthest end = farthest([](Vec3d d) { return norm(d); });
+  if (end.measure < kThick) return false;
+  const Farthest side = farthest([&](Vec3d d) { return norm(cross(end.offset, d)) / end.measure; });
+  if (side.measure < kThick) return false;
+  const Vec3d n = cross(end.offset, side.offset);
+  return farthest([&](Vec3d d) { return std::abs(dot(n, d)) / norm(n); }).measure > kThick;
 }
 
 FaceBox box_of(std::span<const PointF> points) {
