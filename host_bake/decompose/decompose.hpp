@@ -39,8 +39,8 @@ struct Patch {
 /// themselves have at most image::kMaxOpenPatchTriangles faces. Safe for meshes that check()
 /// refuses, as long as the report is of the mesh: edges that are not manifold count as boundary.
 /// Deterministic whatever the number of threads; one is used. `progress` hears the stage
-/// "decompose". Scans take 15 to 25 us a triangle; n^1.5 for large smooth convex patches (2 s for
-/// 100,000 triangles in one).
+/// "decompose". Scans take 4 to 6 us a triangle, large smooth patches that end at others up to
+/// 20 us; about n^1.5 for one convex patch of n triangles (0.3 s for 100,000).
 std::vector<Patch> decompose(const NormalMesh& mesh, const CheckReport& report, unsigned threads,
                              const Progress& progress);
 
