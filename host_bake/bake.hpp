@@ -17,33 +17,36 @@
 namespace palpate::bake {
 
 struct BakeOptions {
-  double delta_rel = 0.01;   ///< contact tolerance that the metrics are made for, relative to the radius
-  unsigned threads = 0;      ///< 0: all
-  bool repaired = false;     ///< recorded in the image
+  double delta_rel =
+      0.01;  ///< contact tolerance that the metrics are made for, relative to the radius
+  unsigned threads = 0;   ///< 0: all
+  bool repaired = false;  ///< recorded in the image
   std::array<std::uint8_t, 32> source_sha256{};
 };
 
 struct BakeReport {
-  std::map<std::string, double> seconds;        ///< by stage
+  std::map<std::string, double> seconds;          ///< by stage
   std::map<std::string, std::uint64_t> rejected;  ///< attempts refused, by reason
-  std::size_t peak_bytes = 0;                   ///< resident set, high-water mark of the process
+  std::size_t peak_bytes = 0;                     ///< resident set, high-water mark of the process
   unsigned threads = 0;
 };
 
-/// Bakes a mesh that require_bakeable() let pass. The bytes depend on mesh, check and options only, not on threads or host.
-/// The result has been passed through palpate::validate(). Throws InputRefused where a limit of the format is met.
-std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const BakeOptions& options, const Progress& progress,
-                            BakeReport& out_report);
+/// Bakes a mesh that require_bakeable() let pass. The bytes depend on mesh, check and options only,
+/// not on threads or host. The result has been passed through palpate::validate(). Throws
+/// InputRefused where a limit of the format is met.
+std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const BakeOptions& options,
+                            const Progress& progress, BakeReport& out_report);
 
 /// One invariant of docs/FORMAT.md and whether it holds for an image.
 struct Proof {
   std::string invariant;
   bool holds = true;
-  std::string found;   ///< the measured figure, or the first place where it fails
+  std::string found;  ///< the measured figure, or the first place where it fails
 };
 
-/// Proves the invariants of a validated image one by one: convexity constraints at every level, enclosure (parent tolerance
-/// nesting), spheres, adjacency against true hulls, every source triangle in exactly one leaf, levels, s, h, D.
+/// Proves the invariants of a validated image one by one: convexity constraints at every level,
+/// enclosure (parent tolerance nesting), spheres, adjacency against true hulls, every source
+/// triangle in exactly one leaf, levels, s, h, D.
 std::vector<Proof> verify(const ImageView& image);
 
 }  // namespace palpate::bake

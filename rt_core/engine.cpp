@@ -189,8 +189,9 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
 
   const std::span<Contact> contacts = engine.query.contacts.first(found.contacts);
   out.contacts = contacts;
-  out.clusters =
-      force::cluster(contacts, settings.cluster_radius_m, engine.ranking, engine.clusters);
+  bool clusters_used_up = false;
+  out.clusters = force::cluster(contacts, settings.cluster_radius_m, engine.ranking,
+                                engine.clusters, clusters_used_up);
   out.wrench = force::penalty_wrench(contacts, engine.clusters.first(out.clusters), engine.pairs,
                                      engine.tool, engine.poses[engine.tool].position_m, settings);
   out.min_distance_m =
@@ -199,6 +200,7 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
   out.queries = found.queries;
   out.certificate =
       certify(found, settings.delta_m, largest_unit_m(engine.query.pairs), meter.used());
+  out.certificate.truncated_by_memory |= clusters_used_up;
   engine.tail_ns = smoothed(engine.tail_ns, meter.tail_ns());
   return Status::ok;
 }

@@ -90,7 +90,7 @@ struct Certificate {
   std::uint64_t units_used = 0;
   bool truncated_by_time = false;    ///< the clock ended refinement
   bool truncated_by_units = false;   ///< the work units ended refinement
-  bool truncated_by_memory = false;  ///< nodes or contacts were used up
+  bool truncated_by_memory = false;  ///< nodes, contacts or clusters were used up
   bool iteration_cap_met = false;    ///< a convex query gave its best so far
   [[nodiscard]] bool truncated() const noexcept {
     return truncated_by_time || truncated_by_units || truncated_by_memory;

@@ -16,8 +16,9 @@ struct Mesh {
   std::vector<Face> faces;
 };
 
-/// A mesh with its vertices relative to the object's centre, divided by its radius and rounded to float: what is baked is
-/// convex, disjoint or coplanar in exactly these numbers. The rounding moves a vertex by at most 6e-8 of the radius.
+/// A mesh with its vertices relative to the object's centre, divided by its radius and rounded to
+/// float: what is baked is convex, disjoint or coplanar in exactly these numbers. The rounding
+/// moves a vertex by at most 6e-8 of the radius.
 struct NormalMesh {
   std::vector<std::array<float, 3>> points;  ///< inside the unit ball (up to rounding)
   std::vector<Face> faces;
@@ -25,8 +26,8 @@ struct NormalMesh {
   double radius_m = 0;  ///< its radius
 };
 
-/// Centre, radius and rounding as above. Throws InputRefused where the mesh is empty or its radius zero or not finite.
-/// Unreferenced vertices do not count. O(n) expected.
+/// Centre, radius and rounding as above. Throws InputRefused where the mesh is empty or its radius
+/// zero or not finite. Unreferenced vertices do not count. O(n) expected.
 NormalMesh normalise(const Mesh& mesh);
 
 }  // namespace palpate::bake

@@ -23,7 +23,8 @@ class Arena {
     const std::size_t start = used_;
     used_ += (count * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
     if (used_ > memory_.size()) return {};
-    T* first = reinterpret_cast<T*>(memory_.data() + start);
+    static_assert(alignof(T) <= kAlignment);
+    T* first = static_cast<T*>(static_cast<void*>(memory_.data() + start));
     for (std::size_t i = 0; i < count; ++i) ::new (static_cast<void*>(first + i)) T{};
     return {first, count};
   }

@@ -37,18 +37,23 @@ bool has_home(const Cluster& candidate, std::span<const Cluster> clusters,
 }  // namespace
 
 std::uint32_t cluster(std::span<Contact> contacts, double radius_m, std::span<Ranked> ranking,
-                      std::span<Cluster> out) noexcept {
+                      std::span<Cluster> out, bool& out_overflow) noexcept {
   MinQueue<Ranked, Nearer> queue(ranking);
   for (std::uint32_t i = 0; i < contacts.size(); ++i) {
     contacts[i].weight = 0;
     queue.push({contacts[i].distance_m, i});
   }
   std::uint32_t clusters = 0;
-  for (; !queue.empty() && clusters < out.size(); queue.pop()) {
+  out_overflow = false;
+  for (; !queue.empty(); queue.pop()) {
     const std::uint32_t index = queue.top().contact;
     Contact& c = contacts[index];
     const Cluster candidate{middle(c), c.normal, c.pair, index};
     if (has_home(candidate, out.first(clusters), radius_m)) continue;
+    if (clusters == out.size()) {
+      out_overflow = true;
+      break;
+    }
     out[clusters++] = candidate;
     c.weight = 1;
   }

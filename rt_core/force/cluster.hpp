@@ -31,12 +31,13 @@ struct Ranked {
 /// Sets Contact::weight: 1 for representatives, 0 for the others.
 ///
 /// @param ranking  scratch, [contacts]
-/// @param out      [most clusters]; where they are used up, the nearest contacts have theirs and
-///                 farther ones add no force
+/// @param out           [most clusters]; where they are used up, the nearest contacts have theirs
+///                      and farther ones add no force
+/// @param out_overflow  whether that was so
 /// Returns the number of clusters. Independent of the order of the contacts up to exact ties in
 /// distance. Cost: O(n log n + n * clusters). No memory.
 std::uint32_t cluster(std::span<Contact> contacts, double radius_m, std::span<Ranked> ranking,
-                      std::span<Cluster> out) noexcept;
+                      std::span<Cluster> out, bool& out_overflow) noexcept;
 
 /// Penalty force of every cluster at its representative: k (delta - distance) along the normal, so
 /// that N coincident contacts give the wrench of one. On the tool, torque about tool_origin_m;

@@ -57,8 +57,9 @@ double sphere_distance(const PairState& pair, const image::Piece& a,
                        const image::Piece& b) noexcept {
   const Vec3d centre_b =
       pair.b_in_a.rotation * centre_of(b, pair.scale_b) + pair.b_in_a.translation;
-  return norm(centre_b - centre_of(a, pair.scale_a)) - pair.scale_a * double{a.radius} -
-         pair.scale_b * double{b.radius};
+  return norm(centre_b - centre_of(a, pair.scale_a)) -
+         pair.scale_a * static_cast<double>(a.radius) -
+         pair.scale_b * static_cast<double>(b.radius);
 }
 
 }  // namespace palpate::levels

@@ -46,7 +46,8 @@ convex::Hull hull_of(const ImageView& image, const image::Piece& piece, double s
 
 /// Centre of a piece's bounding sphere, in the coordinates of its body.
 inline Vec3d centre_of(const image::Piece& piece, double scale) noexcept {
-  return scale * Vec3d{double{piece.centre[0]}, double{piece.centre[1]}, double{piece.centre[2]}};
+  return scale * Vec3d{static_cast<double>(piece.centre[0]), static_cast<double>(piece.centre[1]),
+                       static_cast<double>(piece.centre[2])};
 }
 
 /// Lower bound of the distance of two pieces from their bounding spheres; negative where these

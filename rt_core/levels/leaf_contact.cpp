@@ -15,7 +15,8 @@ constexpr bool has(const Piece& piece, PieceFlag flag) noexcept {
 }
 
 Vec3d position(const image::Vertex& v) noexcept {
-  return {double{v.position[0]}, double{v.position[1]}, double{v.position[2]}};
+  return {static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),
+          static_cast<double>(v.position[2])};
 }
 
 double squared_distance_to_segment(Vec3d p, Vec3d from, Vec3d to) noexcept {

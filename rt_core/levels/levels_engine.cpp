@@ -43,8 +43,8 @@ const Piece& piece_b(const PairState& pair, const Node& node) noexcept {
 
 /// Lower bound now: the proved one less what a's points can have moved since.
 double lower_now(const PairState& pair, const Node& node) noexcept {
-  return double{node.lower} - (pair.travel - node.travel_at) -
-         (pair.turn - node.turn_at) * double{node.reach} - kMotionSlack;
+  return static_cast<double>(node.lower) - (pair.travel - node.travel_at) -
+         (pair.turn - node.turn_at) * static_cast<double>(node.reach) - kMotionSlack;
 }
 
 /// Rounded towards minus infinity far enough for float.
@@ -59,7 +59,8 @@ void prove(const PairState& pair, Node& node, double lower) noexcept {
 /// First bound of a node that has none: its spheres, or what its parent has proved.
 void begin(const PairState& pair, Node& node, double inherited) noexcept {
   const Piece& a = piece_a(pair, node);
-  const double reach = norm(centre_of(a, pair.scale_a)) + pair.scale_a * double{a.radius};
+  const double reach =
+      norm(centre_of(a, pair.scale_a)) + pair.scale_a * static_cast<double>(a.radius);
   node.reach = static_cast<float>(reach * (1 + 1e-6));
   const double spheres = sphere_distance(pair, a, piece_b(pair, node)) - kMotionSlack;
   prove(pair, node, spheres > inherited ? spheres : inherited);
@@ -69,10 +70,13 @@ void begin(const PairState& pair, Node& node, double inherited) noexcept {
 /// and between levels of equal resolution, the larger piece.
 bool splits_a(const PairState& pair, const Piece& a, const Piece& b) noexcept {
   if (a.children == 0 || b.children == 0) return a.children != 0;
-  const double child_a = double{pair.image_a->pieces[a.first_child].resolution} / pair.scale_a;
-  const double child_b = double{pair.image_b->pieces[b.first_child].resolution} / pair.scale_b;
+  const double child_a =
+      static_cast<double>(pair.image_a->pieces[a.first_child].resolution) / pair.scale_a;
+  const double child_b =
+      static_cast<double>(pair.image_b->pieces[b.first_child].resolution) / pair.scale_b;
   if (child_a != child_b) return child_a < child_b;
-  return pair.scale_a * double{a.radius} >= pair.scale_b * double{b.radius};
+  return pair.scale_a * static_cast<double>(a.radius) >=
+         pair.scale_b * static_cast<double>(b.radius);
 }
 
 class Query {
@@ -139,7 +143,8 @@ class Query {
   convex::Distance measure(PairState& pair, Node& node) noexcept {
     meter_.charge(1);
     ++result_.queries;
-    const double rest = kRestTicks * (pair.last_travel + pair.last_turn * double{node.reach});
+    const double rest =
+        kRestTicks * (pair.last_travel + pair.last_turn * static_cast<double>(node.reach));
     const convex::Distance d =
         convex::distance(hull_of(*pair.image_a, piece_a(pair, node), pair.scale_a),
                          hull_of(*pair.image_b, piece_b(pair, node), pair.scale_b), pair.b_in_a,
@@ -175,7 +180,7 @@ class Query {
     }
     for (std::uint32_t child = tree_[index].first_child; child != kNone;
          child = tree_[child].next_sibling) {
-      begin(pair, tree_[child], double{tree_[index].lower});
+      begin(pair, tree_[child], static_cast<double>(tree_[index].lower));
       if (d.state == convex::State::separated) seed_cache(pair, tree_[child], d.normal);
       wait_if_near(child);
     }
@@ -236,7 +241,7 @@ class Query {
 
   void leave_unresolved(double lower_m, const Piece& a, const Piece& b) noexcept {
     if (lower_m < result_.unresolved_lower_m) result_.unresolved_lower_m = lower_m;
-    const double size = double{a.radius > b.radius ? a.radius : b.radius};
+    const double size = static_cast<double>(a.radius > b.radius ? a.radius : b.radius);
     if (size > result_.s_worst) result_.s_worst = size;
   }
 

@@ -8,6 +8,7 @@ if(PALPATE_FUZZ)
   target_compile_options(validate_fuzz PRIVATE -fsanitize=fuzzer)
   target_link_options(validate_fuzz PRIVATE -fsanitize=fuzzer)
   target_link_libraries(validate_fuzz PRIVATE palpate_flags)
+  add_custom_target(fuzz_targets DEPENDS validate_fuzz)
   add_test(NAME validate_fuzz COMMAND validate_fuzz
     -max_total_time=10 -max_len=16384 -artifact_prefix=${PROJECT_BINARY_DIR}/)
   set_tests_properties(validate_fuzz PROPERTIES LABELS fuzz TIMEOUT 120)

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 #include <vector>
@@ -25,6 +26,7 @@ std::vector<Dop> random_dops(std::size_t count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<float> at(-0.5f, 0.5f);
   std::vector<Dop> dops;
+  dops.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     dops.push_back(point_dop(at(random), at(random), at(random)));
   }
@@ -33,6 +35,7 @@ std::vector<Dop> random_dops(std::size_t count, std::uint64_t seed) {
 
 TEST(Dop, Unit_cube_has_its_widths) {
   std::vector<PointF> corners;
+  corners.reserve(8);
   for (int i = 0; i < 8; ++i) {
     corners.push_back(
         {static_cast<float>(i & 1), static_cast<float>(i >> 1 & 1), static_cast<float>(i >> 2)});

@@ -23,6 +23,7 @@ Contact at(Vec3d point, Vec3d normal, double distance, std::uint32_t pair = 0) {
 struct Outcome {
   Wrench wrench;
   std::uint32_t clusters = 0;
+  bool overflow = false;
 };
 
 Outcome feel(std::vector<Contact>& contacts, const Settings& settings, std::uint32_t tool = 0,
@@ -31,7 +32,7 @@ Outcome feel(std::vector<Contact>& contacts, const Settings& settings, std::uint
   std::vector<Cluster> clusters(most);
   const BodyPair pairs[] = {{0, 1}, {2, 0}, {1, 2}};
   Outcome o;
-  o.clusters = cluster(contacts, settings.cluster_radius_m, order, clusters);
+  o.clusters = cluster(contacts, settings.cluster_radius_m, order, clusters, o.overflow);
   o.wrench = penalty_wrench(contacts, std::span(clusters).first(o.clusters), pairs, tool, {0, 0, 0},
                             settings);
   return o;
@@ -121,6 +122,8 @@ TEST(Cluster, full_table_keeps_the_nearest) {
     c.push_back(at({0.1 * i, 0, 0}, {0, 0, 1}, 0.0001 * (i + 1) - 0.0005));
   const Outcome o = feel(c, kSettings, 0, 3);
   EXPECT_EQ(o.clusters, 3u);
+  EXPECT_TRUE(o.overflow);
+  EXPECT_FALSE(feel(c, kSettings, 0, 10).overflow);
   EXPECT_NEAR(o.wrench.force_N.z, 500 * (3 * 0.001 + 0.0004 + 0.0003 + 0.0002), 1e-12);
 }
 

@@ -8,10 +8,10 @@
 #include <random>
 #include <vector>
 
-#include "decompose_oracle.hpp"
 #include "host_bake/hull/facets.hpp"
 #include "host_bake/hull/hull.hpp"
 #include "host_bake/hull/quickhull.hpp"
+#include "hull_oracle.hpp"
 
 namespace palpate::bake {
 namespace {

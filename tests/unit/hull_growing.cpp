@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
-#include "decompose_oracle.hpp"
 #include "host_bake/hull/growing_hull.hpp"
 #include "host_bake/hull/predicates.hpp"
+#include "hull_oracle.hpp"
 
 namespace palpate::bake {
 namespace {

@@ -20,6 +20,6 @@ need_packages() {
     as_root=(sudo)
   fi
   echo "Installing ${#missing[@]} packages: ${missing[*]}"
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -qq
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -qq -o APT::Sandbox::User=root
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq -o APT::Sandbox::User=root -o Dpkg::Use-Pty=0 --no-install-recommends "${missing[@]}" >/dev/null
 }

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+# Promises of rt_core that are read from its objects: nothing asked for from outside, no recursion, a bounded stack. Optimised
+# builds without instrumentation only.
+set(PALPATE_STACK_LIMIT 8192)
+if(NOT PALPATE_SANITIZE AND NOT PALPATE_COVERAGE)
+  add_test(NAME rt_core.symbols
+    COMMAND "${CMAKE_CURRENT_SOURCE_DIR}/gates/symbols" ${CMAKE_NM} $<TARGET_FILE:palpate_rt>)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    add_test(NAME rt_core.stack
+      COMMAND "${CMAKE_CURRENT_SOURCE_DIR}/gates/stack.py" "${PROJECT_BINARY_DIR}" ${PALPATE_STACK_LIMIT}
+        palpate::tick palpate::create palpate::validate)
+  endif()
+endif()
+
+# find_package(Palpate) from an installed copy, as firmware and closed hosts use it.
+if(PALPATE_HOST AND NOT PALPATE_SANITIZE AND NOT PALPATE_COVERAGE AND NOT PALPATE_FUZZ)
+  add_test(NAME install.find_package
+    COMMAND "${CMAKE_CURRENT_SOURCE_DIR}/gates/install" "${CMAKE_COMMAND}" "${PROJECT_BINARY_DIR}")
+endif()
+get_property(gates DIRECTORY PROPERTY TESTS)
+foreach(gate rt_core.symbols rt_core.stack install.find_package)
+  if(gate IN_LIST gates)
+    set_tests_properties(${gate} PROPERTIES LABELS unit)
+  endif()
+endforeach()
