@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "host_bake/hierarchy/merge.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <string>
 
+#include "host_bake/base/parallel.hpp"
 #include "host_bake/hierarchy/dop.hpp"
 #include "host_bake/hierarchy/pairing.hpp"
 
@@ -103,7 +102,7 @@ void merge_to_root(Hierarchy& tree, const Progress& progress) {
     const auto level = static_cast<std::uint32_t>(tree.levels.size());
     const auto first_merged = static_cast<std::uint32_t>(tree.pieces.size());
     std::vector<TreePiece> made(pairs.size());
-    tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
+    parallel_for(pairs.size(), [&](std::size_t i) {
       made[i] = merged(tree, front.pieces[pairs[i].first], front.pieces[pairs[i].second], level);
     });
     for (std::uint32_t i = 0; i < made.size(); ++i) {

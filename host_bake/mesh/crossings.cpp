@@ -83,6 +83,13 @@ bool collinear(const Point& a, const Point& b, const Point& c) {
   return CGAL::collinear(to_cgal(a), to_cgal(b), to_cgal(c));
 }
 
+#if defined(__SANITIZE_THREAD__)
+// CGAL's threads are not ours, and the sanitizer cannot see into the oneTBB that joins them.
+using Concurrency = CGAL::Sequential_tag;
+#else
+using Concurrency = CGAL::Parallel_tag;
+#endif
+
 std::optional<std::vector<Pair>> crossing_pairs(const Mesh& mesh) {
   const auto corners = [&mesh](std::uint32_t face) {
     const Face& f = mesh.faces[face];
@@ -99,7 +106,7 @@ std::optional<std::vector<Pair>> crossing_pairs(const Mesh& mesh) {
   std::atomic<std::size_t> meetings{0};
   tbb::concurrent_vector<Pair> found;
   try {
-    CGAL::box_self_intersection_d<CGAL::Parallel_tag>(
+    CGAL::box_self_intersection_d<Concurrency>(
         boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
           if (meetings.fetch_add(1, std::memory_order_relaxed) >= limit) throw TooManyMeetings{};
           if (!triangles_cross(corners(a.info()), corners(b.info()))) return;

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "host_bake/metrics/hausdorff.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
 
+#include "host_bake/base/parallel.hpp"
 #include "host_bake/metrics/hull_side.hpp"
 
 namespace palpate::bake {
@@ -45,7 +44,7 @@ float rounded_up(double v) {
 
 std::vector<float> hausdorff_bounds(const Hierarchy& tree) {
   std::vector<double> to_parent(tree.pieces.size(), 0.0);
-  tbb::parallel_for(std::size_t{0}, tree.pieces.size(), [&](std::size_t i) {
+  parallel_for(tree.pieces.size(), [&](std::size_t i) {
     const TreePiece& piece = tree.pieces[i];
     if (piece.parent != image::kNone)
       to_parent[i] = directed_distance(tree, piece, tree.pieces[piece.parent]);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "host_bake/metrics/metrics.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <utility>
 
+#include "host_bake/base/parallel.hpp"
 #include "host_bake/metrics/hausdorff.hpp"
 
 namespace palpate::bake {
@@ -13,7 +12,7 @@ Metrics measure(const Hierarchy& tree, std::vector<float> support_area, const Pr
   Metrics metrics;
   metrics.support_area = std::move(support_area);
   metrics.spheres.resize(tree.pieces.size());
-  tbb::parallel_for(std::size_t{0}, tree.pieces.size(), [&](std::size_t i) {
+  parallel_for(tree.pieces.size(), [&](std::size_t i) {
     metrics.spheres[i] = bounding_sphere(hull_points(tree, tree.pieces[i]));
   });
   if (progress) progress("metrics", 0.5);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "host_bake/verify/evidence.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
+
+#include "host_bake/base/parallel.hpp"
 
 namespace palpate::bake {
 namespace {
@@ -31,7 +31,7 @@ Evidence gather(const ImageView& image) {
   Evidence evidence{image, {}, {}};
   evidence.points.resize(image.pieces.size());
   evidence.hulls.resize(image.pieces.size());
-  tbb::parallel_for(std::size_t{0}, image.pieces.size(), [&](std::size_t i) {
+  parallel_for(image.pieces.size(), [&](std::size_t i) {
     evidence.points[i] = positions(image, image.pieces[i]);
     evidence.hulls[i] = hull_of(hull_points(evidence, static_cast<std::uint32_t>(i)));
   });
@@ -50,8 +50,7 @@ std::span<const image::Triangle> patch(const Evidence& evidence, const image::Pi
 Proof prove_each(const std::string& invariant, std::size_t pieces,
                  const std::function<std::string(std::uint32_t)>& check) {
   std::vector<std::string> wrong(pieces);
-  tbb::parallel_for(std::size_t{0}, pieces,
-                    [&](std::size_t i) { wrong[i] = check(static_cast<std::uint32_t>(i)); });
+  parallel_for(pieces, [&](std::size_t i) { wrong[i] = check(static_cast<std::uint32_t>(i)); });
   const auto first =
       std::find_if(wrong.begin(), wrong.end(), [](const std::string& w) { return !w.empty(); });
   if (first == wrong.end()) return {invariant, true, std::to_string(pieces) + " pieces"};
