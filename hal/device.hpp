@@ -33,6 +33,8 @@ enum DeviceFault : std::uint32_t {
       1u << 1,  ///< it was sent a command that is not finite; it rendered none of it
   kDeviceOverheated = 1u << 2,  ///< it has reduced its force to protect itself
   kDeviceBadReading = 1u << 3,  ///< a sensor's reading cannot be right
+  kDeviceFailed = 1u << 4,      ///< a motor, its power, or the device's own checks
+  kDeviceSilenced = 1u << 5,    ///< it ended the force because commands came too late or were stale
 };
 
 /// One reading of the device.
@@ -52,6 +54,9 @@ struct DeviceCommand {
   std::uint64_t expires_ns =
       0;          ///< from this time on the device renders zero, unless a newer command has come
   Wrench wrench;  ///< on the tool, about the origin of its body frame
+  std::uint64_t answers =
+      0;  ///< DeviceState::sequence of the reading it was computed from; 0: none
+  std::uint64_t state_time_ns = 0;  ///< DeviceState::time_ns of that reading
 };
 
 /// What the device can do.

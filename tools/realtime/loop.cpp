@@ -125,6 +125,8 @@ void Loop::send(const Wrench& wrench) noexcept {
   command_.time_ns = clock_.now_ns();
   command_.expires_ns = command_.time_ns + nanoseconds(settings_.command_life_s);
   command_.wrench = wrench;
+  command_.answers = reading_.sequence;
+  command_.state_time_ns = reading_.time_ns;
   device_.send(command_);
 }
 

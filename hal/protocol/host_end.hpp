@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The host's half of the open protocol: packets in and readings out, commands in and packets out.
+// Knows no clock and no USB.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "hal/device.hpp"
+#include "hal/protocol/clock_map.hpp"
+#include "hal/protocol/packets.hpp"
+
+namespace palpate::hal::protocol {
+
+/// What has become of the packets of a session.
+struct LinkCounters {
+  std::uint64_t readings = 0;  ///< used
+  std::uint64_t lost = 0;      ///< missing in the sequence
+  std::uint64_t refused = 0;   ///< no packets, damaged, or of no sense
+  std::uint64_t outdated = 0;  ///< repeated or overtaken
+};
+
+class HostEnd {
+ public:
+  explicit HostEnd(const Capabilities& capabilities) noexcept : capabilities_(capabilities) {}
+
+  /// A packet that has come in. True, and `out` written, where it is a newer reading that can be
+  /// relied on (the device is not homing). Packets that are refused or outdated are counted.
+  /// @param arrival_ns  host clock; never runs backwards
+  [[nodiscard]] bool receive(std::span<const std::byte> packet, std::uint64_t arrival_ns,
+                             DeviceState& out) noexcept;
+
+  /// The packet that asks for a command, or for no force where the command has expired or is not
+  /// finite. The life that it gives the device is what is left of the command's own, at most the
+  /// device's; forces beyond the wire's range are cut to it.
+  [[nodiscard]] Packet command(const DeviceCommand& command, std::uint64_t now_ns) noexcept;
+
+  /// The packet that asks for no force.
+  [[nodiscard]] Packet no_force() noexcept;
+
+  [[nodiscard]] const LinkCounters& counters() const noexcept { return counters_; }
+
+  /// The newest reading said that the device does not know its zero yet.
+  [[nodiscard]] bool is_homing() const noexcept { return homing_; }
+
+ private:
+  Capabilities capabilities_;
+  ClockMap clock_map_;
+  LinkCounters counters_;
+  bool homing_ = false;
+  std::uint32_t last_sequence_ = 0;  ///< on the wire; 0: none yet
+  std::uint64_t last_device_ns_ = 0;
+  std::uint64_t sequence_ = 0;  ///< of the newest reading, without wrapping; from 1
+  std::uint32_t commands_ = 0;
+};
+
+}  // namespace palpate::hal::protocol

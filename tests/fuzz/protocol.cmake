@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: Apache-2.0
+if(PALPATE_FUZZ)
+  # hal_fuzz(NAME SOURCES...): the code under test is compiled again, so that the fuzzer sees its branches.
+  function(hal_fuzz name)
+    add_executable(${name} ${ARGN})
+    target_include_directories(${name} PRIVATE
+      "${PROJECT_BINARY_DIR}/include_shims/hal" "${PROJECT_BINARY_DIR}/include_shims/rt_core")
+    target_compile_options(${name} PRIVATE -fsanitize=fuzzer)
+    target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+    target_link_libraries(${name} PRIVATE palpate_flags)
+    add_dependencies(fuzz_targets ${name})
+    add_test(NAME ${name} COMMAND ${name}
+      -max_total_time=10 -max_len=1024 -artifact_prefix=${PROJECT_BINARY_DIR}/)
+    set_tests_properties(${name} PROPERTIES LABELS fuzz TIMEOUT 120)
+  endfunction()
+
+  file(GLOB protocol_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/hal/protocol/*.cpp")
+  hal_fuzz(protocol_fuzz fuzz/protocol_fuzz.cpp ${protocol_sources})
+endif()
