@@ -14,6 +14,8 @@
 #include "host_bake/decompose/decompose.hpp"
 #include "host_bake/hierarchy/hierarchy.hpp"
 #include "host_bake/hierarchy/merge.hpp"
+#include "host_bake/hierarchy/prune.hpp"
+#include "host_bake/metrics/deviation.hpp"
 #include "host_bake/metrics/metrics.hpp"
 #include "host_bake/metrics/support_area.hpp"
 #include "host_bake/pack/aligned.hpp"
@@ -73,6 +75,9 @@ image::Header facts_of(const NormalMesh& mesh, const CheckReport& check,
   facts.source_boundary_edges = static_cast<std::uint32_t>(check.boundary_edges);
   facts.source_crossings = static_cast<std::uint32_t>(check.crossings);
   facts.delta_rel = static_cast<float>(options.delta_rel);
+  facts.stop_resolution = static_cast<float>(options.stop.stop_resolution);
+  facts.stop_deviation_rel = static_cast<float>(options.stop_deviation_rel);
+  facts.stop_pieces = options.stop.stop_pieces;
   return facts;
 }
 
@@ -82,6 +87,71 @@ void require_valid(const std::vector<std::byte>& bytes) {
   const Status status = validate(copy.bytes(), view);
   if (status != Status::ok)
     throw std::logic_error(std::string("the baked image is not valid: ") + describe(status));
+}
+
+struct Simplified {
+  std::vector<SimplifiedLevel> levels;
+  std::vector<std::vector<float>> deviations;  // s of each patch of each level
+};
+
+bool outside_format(const NormalMesh& mesh) {
+  return std::any_of(mesh.points.begin(), mesh.points.end(), [](const auto& p) {
+    const auto square = [](float v) { return static_cast<double>(v) * static_cast<double>(v); };
+    return std::sqrt(square(p[0]) + square(p[1]) + square(p[2])) >
+           static_cast<double>(image::kMaxNorm);
+  });
+}
+
+// Deviation grows from level to level, so the rule is applied to whole levels.
+void measure_deviation(const NormalMesh& mesh, double stop_deviation, const Progress& progress,
+                       Simplified& out) {
+  if (out.levels.empty()) return;
+  const NearestSurface original(mesh);
+  for (std::size_t l = 0; l < out.levels.size(); ++l) {
+    if (progress)
+      progress("deviation", static_cast<double>(l) / static_cast<double>(out.levels.size()));
+    std::vector<float> s = surface_deviations(original, out.levels[l].mesh, out.levels[l].patches);
+    const bool too_far =
+        outside_format(out.levels[l].mesh) ||
+        (stop_deviation > 0 && std::any_of(s.begin(), s.end(), [&](float v) {
+           return static_cast<double>(v) > stop_deviation;
+         }));
+    if (too_far) out.levels.resize(l);
+    if (!too_far) out.deviations.push_back(std::move(s));
+  }
+}
+
+std::vector<std::byte> pack_without(std::uint32_t dropped, Hierarchy tree, Metrics metrics,
+                                    const image::Header& facts) {
+  drop_levels(tree, metrics, dropped);
+  return pack(tree, metrics, facts);
+}
+
+// Bytes of the finest image within the options' promise and size.
+std::vector<std::byte> pack_required(const Hierarchy& tree, const Metrics& metrics, const BakeOptions& options,
+                                     image::Header facts) {
+  const auto partner_area = static_cast<float>(options.partner_area);
+  const auto next_serves = [&](std::uint32_t dropped) {
+    const auto s0 = served_s0(tree, metrics, dropped + 1, partner_area);
+    return s0 && static_cast<double>(*s0) <= options.s0_min;
+  };
+  std::uint32_t dropped = 0;
+  while (options.s0_min > 0 && next_serves(dropped)) ++dropped;
+  for (;; ++dropped) {
+    const auto s0 = served_s0(tree, metrics, dropped, partner_area);
+    const bool serves = s0 && (options.s0_min == 0 || static_cast<double>(*s0) <= options.s0_min);
+    if (!serves) {
+      throw InputRefused("no image of this object is small enough",
+                         "at most " + std::to_string(options.max_bytes) + " bytes wanted",
+                         "allow more bytes, a larger --s0-min, or a larger --partner-area");
+    }
+    facts.dropped_levels = dropped;
+    facts.s0_min = *s0;
+    facts.partner_area = dropped > 0 ? partner_area : 0;
+    std::vector<std::byte> bytes =
+        dropped == 0 ? pack(tree, metrics, facts) : pack_without(dropped, tree, metrics, facts);
+    if (options.max_bytes == 0 || bytes.size() <= options.max_bytes) return bytes;
+  }
 }
 
 }  // namespace
@@ -99,16 +169,28 @@ std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const Ba
   const std::vector<Patch> patches =
       timed(report, "decompose", [&] { return decompose(normal, check, threads, progress); });
   const std::vector<Vec3d> normals = vertex_normals(normal);
+  SimplifyReport simplification;
+  Simplified simplified;
+  simplified.levels = timed(report, "simplify", [&] {
+    return simplify(normal, check, patches, options.stop, progress, simplification);
+  });
+  report.rejected = simplification.refused;
+  timed(report, "deviation", [&] {
+    return measure_deviation(normal, options.stop_deviation_rel, progress, simplified), 0;
+  });
   const Hierarchy tree = timed(report, "merge", [&] {
     Hierarchy growing = level_zero(normal, patches, finest_resolution(normal, normals));
+    for (const SimplifiedLevel& level : simplified.levels) add_level(growing, level);
     merge_to_root(growing, progress);
     return growing;
   });
   const Metrics metrics = timed(report, "metrics", [&] {
-    return measure(tree, support_areas(normal, normals, options.delta_rel), progress);
+    return measure(tree, simplified.levels, simplified.deviations,
+                   support_areas(normal, normals, options.delta_rel), progress);
   });
-  std::vector<std::byte> bytes =
-      timed(report, "pack", [&] { return pack(tree, metrics, facts_of(normal, check, options)); });
+  std::vector<std::byte> bytes = timed(report, "pack", [&] {
+    return pack_required(tree, metrics, options, facts_of(normal, check, options));
+  });
   timed(report, "validate", [&] { return require_valid(bytes), 0; });
   report.peak_bytes = peak_resident_bytes();
   out_report = std::move(report);

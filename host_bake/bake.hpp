@@ -12,6 +12,7 @@
 #include "host_bake/base/error.hpp"
 #include "host_bake/mesh/check.hpp"
 #include "host_bake/mesh/mesh.hpp"
+#include "host_bake/simplify/simplify.hpp"
 #include "rt_core/image/view.hpp"
 
 namespace palpate::bake {
@@ -19,6 +20,15 @@ namespace palpate::bake {
 struct BakeOptions {
   double delta_rel =
       0.01;  ///< contact tolerance that the metrics are made for, relative to the radius
+  /// Stop rules of simplification, recorded in the image. The first that applies ends it.
+  SimplifyOptions stop;
+  double stop_deviation_rel = 0;  ///< no level whose s passes this; 0: no such rule
+
+  // Only what a scene requires (prune.hpp); 0: everything.
+  double s0_min = 0;        ///< the image has to serve every threshold from this up ...
+  double partner_area = 0;  ///< ... against partners with at least these support areas
+  std::size_t max_bytes = 0;  ///< the finest image that is no larger
+
   unsigned threads = 0;   ///< 0: all
   bool repaired = false;  ///< recorded in the image
   std::array<std::uint8_t, 32> source_sha256{};
@@ -33,7 +43,7 @@ struct BakeReport {
 
 /// Bakes a mesh that require_bakeable() let pass. The bytes depend on mesh, check and options only,
 /// not on threads or host. The result has been passed through palpate::validate(). Throws
-/// InputRefused where a limit of the format is met.
+/// InputRefused where a limit of the format is met, or where no image serves s0_min in max_bytes.
 std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const BakeOptions& options,
                             const Progress& progress, BakeReport& out_report);
 

@@ -2,17 +2,22 @@
 #include "host_bake/hierarchy/hierarchy.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <tuple>
+
+#include "host_bake/base/parallel.hpp"
+#include "host_bake/hierarchy/adopt.hpp"
 
 namespace palpate::bake {
 namespace {
 
 // `local_of` maps points of the mesh to the patch's; only the entries of this patch's vertices are
-// read.
-TreePiece piece_of(const Patch& patch, const NormalMesh& mesh,
+// read. `first_point` is where the mesh's points lie in the tree.
+TreePiece piece_of(const Patch& patch, const NormalMesh& mesh, std::uint32_t first_point,
                    std::vector<std::uint32_t>& local_of) {
   TreePiece piece;
   piece.vertices = patch.vertices;
+  for (std::uint32_t& v : piece.vertices) v += first_point;
   piece.hull_vertices = static_cast<std::uint32_t>(patch.hull.vertices.size());
   piece.dimension = patch.hull.dimension;
   piece.hull_faces = patch.hull.faces;
@@ -35,12 +40,47 @@ Hierarchy level_zero(const NormalMesh& mesh, const std::vector<Patch>& patches, 
   tree.points = mesh.points;
   tree.pieces.reserve(2 * patches.size());
   std::vector<std::uint32_t> local_of(mesh.points.size(), image::kNone);
-  for (const Patch& patch : patches) tree.pieces.push_back(piece_of(patch, mesh, local_of));
+  for (const Patch& patch : patches) tree.pieces.push_back(piece_of(patch, mesh, 0, local_of));
   tree.levels.push_back({.pieces = static_cast<std::uint32_t>(patches.size()),
                          .triangles = static_cast<std::uint32_t>(mesh.faces.size()),
                          .free = false,
                          .resolution = resolution});
   return tree;
+}
+
+void add_level(Hierarchy& tree, const SimplifiedLevel& level) {
+  const auto number = static_cast<std::uint32_t>(tree.levels.size());
+  const auto first_piece = static_cast<std::uint32_t>(tree.pieces.size());
+  const auto first_point = static_cast<std::uint32_t>(tree.points.size());
+  const std::uint32_t first_below = first_piece - tree.levels.back().pieces;
+  tree.points.insert(tree.points.end(), level.mesh.points.begin(), level.mesh.points.end());
+
+  std::vector<std::uint32_t> local_of(level.mesh.points.size(), image::kNone);
+  std::vector<TreePiece> made;
+  made.reserve(level.patches.size());
+  for (const Patch& patch : level.patches) {
+    made.push_back(piece_of(patch, level.mesh, first_point, local_of));
+    made.back().level = number;
+  }
+  const std::vector<std::uint32_t> parents = choose_parents(tree, level);
+  for (std::uint32_t below = 0; below < parents.size(); ++below) {
+    const std::uint32_t parent = parents[below];
+    tree.pieces[first_below + below].parent = first_piece + parent;
+    made[parent].children.push_back(first_below + below);
+  }
+  parallel_for(made.size(), [&](std::size_t i) {
+    made[i].enclosing = enclosing_hull(tree, made[i].children).points;
+  });
+  std::move(made.begin(), made.end(), std::back_inserter(tree.pieces));
+  tree.levels.push_back({.pieces = static_cast<std::uint32_t>(level.patches.size()),
+                         .triangles = static_cast<std::uint32_t>(level.mesh.faces.size()),
+                         .free = false,
+                         .resolution = static_cast<float>(level.resolution)});
+}
+
+std::span<const std::uint32_t> enclosing_points(const TreePiece& piece) {
+  if (!piece.enclosing.empty()) return piece.enclosing;
+  return {piece.vertices.data(), piece.hull_vertices};
 }
 
 std::vector<std::uint32_t> top_pieces(const Hierarchy& tree) {
@@ -80,10 +120,28 @@ std::vector<PiecePair> edge_neighbours(const Hierarchy& tree,
   return pairs;
 }
 
+std::vector<PointF> positions(const Hierarchy& tree, std::span<const std::uint32_t> points) {
+  std::vector<PointF> out(points.size());
+  std::transform(points.begin(), points.end(), out.begin(),
+                 [&](std::uint32_t p) { return tree.points[p]; });
+  return out;
+}
+
 std::vector<PointF> hull_points(const Hierarchy& tree, const TreePiece& piece) {
-  std::vector<PointF> points(piece.hull_vertices);
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] = tree.points[piece.vertices[i]];
-  return points;
+  return positions(tree, {piece.vertices.data(), piece.hull_vertices});
+}
+
+EnclosingHull enclosing_hull(const Hierarchy& tree, std::span<const std::uint32_t> children) {
+  std::vector<std::uint32_t> united;
+  for (const std::uint32_t c : children) {
+    const auto below = enclosing_points(tree.pieces[c]);
+    united.insert(united.end(), below.begin(), below.end());
+  }
+  std::sort(united.begin(), united.end());
+  united.erase(std::unique(united.begin(), united.end()), united.end());
+  EnclosingHull out{convex_hull(positions(tree, united)), {}};
+  for (const std::uint32_t v : out.hull.vertices) out.points.push_back(united[v]);
+  return out;
 }
 
 }  // namespace palpate::bake

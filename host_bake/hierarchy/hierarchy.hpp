@@ -6,12 +6,14 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "host_bake/decompose/decompose.hpp"
 #include "host_bake/hull/hull.hpp"
 #include "host_bake/mesh/mesh.hpp"
+#include "host_bake/simplify/simplify.hpp"
 #include "rt_core/image/format.hpp"
 
 namespace palpate::bake {
@@ -32,11 +34,12 @@ struct TreePiece {
   int dimension = 3;
   /// Local, as in HullMesh::faces.
   std::vector<std::array<std::uint32_t, 3>> hull_faces;
-  /// s, Sec. 4.5. 0 on level 0, and on free levels, which have no metric.
-  float surface_deviation = 0;
+  /// Into Hierarchy::points, ascending: the extreme points of all descendants of level 0. Empty
+  /// where they are the hull vertices: on level 0 and on free levels.
+  std::vector<std::uint32_t> enclosing;
 
   // Of the patch, as in Patch; empty and false on free levels.
-  std::vector<image::Triangle> triangles;                   ///< local
+  std::vector<image::Triangle> triangles;  ///< local; `source` counts in the mesh of its level
   std::vector<std::array<std::uint32_t, 3>> virtual_faces;  ///< local
   bool all_real = false;
   bool back_open = false;
@@ -51,7 +54,7 @@ struct TreeLevel {
 };
 
 struct Hierarchy {
-  std::vector<PointF> points;     ///< the mesh's first, at their indices there
+  std::vector<PointF> points;     ///< the mesh's first, at their indices there; then each level's
   std::vector<TreePiece> pieces;  ///< children before parents; the root is the last one
   std::vector<TreeLevel> levels;  ///< finest first
 };
@@ -62,6 +65,14 @@ using PiecePair = std::pair<std::uint32_t, std::uint32_t>;  ///< first < second
 /// that of the level (finest_resolution() of metrics). O(size of the patches).
 Hierarchy level_zero(const NormalMesh& mesh, const std::vector<Patch>& patches, float resolution);
 
+/// Puts a simplified level on top of the pieces that have no parent: those of the level before it,
+/// in the order of its patches. Every patch becomes a piece; choose_parents() says whose. Parallel;
+/// the same whatever the number of threads. O(n log n) in the extreme points of the pieces.
+void add_level(Hierarchy& tree, const SimplifiedLevel& level);
+
+/// The extreme points of a piece's descendants of level 0, into Hierarchy::points.
+std::span<const std::uint32_t> enclosing_points(const TreePiece& piece);
+
 /// The pieces that have no parent, ascending.
 std::vector<std::uint32_t> top_pieces(const Hierarchy& tree);
 
@@ -70,7 +81,18 @@ std::vector<std::uint32_t> top_pieces(const Hierarchy& tree);
 std::vector<PiecePair> edge_neighbours(const Hierarchy& tree,
                                        const std::vector<std::uint32_t>& pieces);
 
+/// Positions of points of the tree.
+std::vector<PointF> positions(const Hierarchy& tree, std::span<const std::uint32_t> points);
+
 /// Positions of a piece's hull vertices.
 std::vector<PointF> hull_points(const Hierarchy& tree, const TreePiece& piece);
+
+/// The hull of everything that the children have below them, and its extreme points as indices into
+/// Hierarchy::points, ascending.
+struct EnclosingHull {
+  HullMesh hull;
+  std::vector<std::uint32_t> points;
+};
+EnclosingHull enclosing_hull(const Hierarchy& tree, std::span<const std::uint32_t> children);
 
 }  // namespace palpate::bake

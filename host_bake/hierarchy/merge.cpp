@@ -17,24 +17,11 @@ TreePiece merged(const Hierarchy& tree, std::uint32_t a, std::uint32_t b, std::u
   TreePiece piece;
   piece.level = level;
   piece.children = {a, b};
-  std::vector<std::uint32_t> united_vertices;
-  for (const std::uint32_t c : piece.children) {
-    const TreePiece& child = tree.pieces[c];
-    united_vertices.insert(united_vertices.end(), child.vertices.begin(),
-                           child.vertices.begin() + child.hull_vertices);
-  }
-  std::sort(united_vertices.begin(), united_vertices.end());
-  united_vertices.erase(std::unique(united_vertices.begin(), united_vertices.end()),
-                        united_vertices.end());
-
-  std::vector<PointF> points(united_vertices.size());
-  std::transform(united_vertices.begin(), united_vertices.end(), points.begin(),
-                 [&](std::uint32_t v) { return tree.points[v]; });
-  HullMesh hull = convex_hull(points);
-  piece.dimension = hull.dimension;
-  piece.hull_faces = std::move(hull.faces);
-  piece.hull_vertices = static_cast<std::uint32_t>(hull.vertices.size());
-  for (const std::uint32_t v : hull.vertices) piece.vertices.push_back(united_vertices[v]);
+  EnclosingHull enclosing = enclosing_hull(tree, piece.children);
+  piece.dimension = enclosing.hull.dimension;
+  piece.hull_faces = std::move(enclosing.hull.faces);
+  piece.hull_vertices = static_cast<std::uint32_t>(enclosing.points.size());
+  piece.vertices = std::move(enclosing.points);
   return piece;
 }
 
@@ -49,7 +36,7 @@ Front first_front(const Hierarchy& tree) {
   Front front{top_pieces(tree), {}, {}};
   front.bounds.reserve(front.pieces.size());
   for (const std::uint32_t p : front.pieces)
-    front.bounds.push_back(dop_of(hull_points(tree, tree.pieces[p])));
+    front.bounds.push_back(dop_of(positions(tree, enclosing_points(tree.pieces[p]))));
   front.neighbours = edge_neighbours(tree, front.pieces);
   return front;
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <span>
 
 #include "host_bake/base/parallel.hpp"
@@ -12,25 +11,6 @@
 
 namespace palpate::bake {
 namespace {
-
-std::span<const std::uint32_t> hull_of(const TreePiece& piece) {
-  return {piece.vertices.data(), piece.hull_vertices};
-}
-
-// Largest distance of the child's hull vertices to the parent's hull.
-double directed_distance(const Hierarchy& tree, const TreePiece& child, const TreePiece& parent) {
-  std::vector<std::uint32_t> shared(hull_of(parent).begin(), hull_of(parent).end());
-  std::sort(shared.begin(), shared.end());
-  const std::vector<PointF> points = hull_points(tree, parent);
-  std::optional<HullSide> side;  // many parents have all their children's vertices and need none
-  double largest = 0;
-  for (const std::uint32_t v : hull_of(child)) {
-    if (std::binary_search(shared.begin(), shared.end(), v)) continue;
-    if (!side) side.emplace(points, parent.hull_faces, parent.dimension);
-    largest = std::max(largest, side->distance(tree.points[v]));
-  }
-  return largest;
-}
 
 float rounded_up(double v) {
   if (v <= 0) return 0;
@@ -42,21 +22,23 @@ float rounded_up(double v) {
 
 }  // namespace
 
+float largest_distance(std::span<const PointF> points, std::span<const PointF> hull_points,
+                       std::span<const std::array<std::uint32_t, 3>> faces, int dimension) {
+  const HullSide side(hull_points, faces, dimension);
+  double largest = 0;
+  for (const PointF& p : points) largest = std::max(largest, side.distance(p));
+  return rounded_up(largest);
+}
+
 std::vector<float> hausdorff_bounds(const Hierarchy& tree) {
-  std::vector<double> to_parent(tree.pieces.size(), 0.0);
+  std::vector<float> bound(tree.pieces.size(), 0.0f);
   parallel_for(tree.pieces.size(), [&](std::size_t i) {
     const TreePiece& piece = tree.pieces[i];
-    if (piece.parent != image::kNone)
-      to_parent[i] = directed_distance(tree, piece, tree.pieces[piece.parent]);
+    if (piece.enclosing.empty()) return;
+    bound[i] = largest_distance(positions(tree, piece.enclosing), hull_points(tree, piece),
+                                piece.hull_faces, piece.dimension);
   });
-  std::vector<double> bound(tree.pieces.size(), 0.0);
-  for (std::size_t i = 0; i < tree.pieces.size(); ++i) {  // children come before their parents
-    const std::uint32_t parent = tree.pieces[i].parent;
-    if (parent != image::kNone) bound[parent] = std::max(bound[parent], bound[i] + to_parent[i]);
-  }
-  std::vector<float> out(bound.size());
-  std::transform(bound.begin(), bound.end(), out.begin(), rounded_up);
-  return out;
+  return bound;
 }
 
 }  // namespace palpate::bake

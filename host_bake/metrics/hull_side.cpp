@@ -13,9 +13,9 @@ namespace {
 
 double largest(Vec3d v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-// (b - a) x (c - a) . (p - a) in double, |p - a| <= 2.01: off by less than 100 roundings of its
+// (b - a) x (c - a) . (p - a) in double, |p - a| <= 2.51: off by less than 100 roundings of its
 // largest term.
-constexpr double kPlaneRoundings = 256 * 2.01 * std::numeric_limits<double>::epsilon();
+constexpr double kPlaneRoundings = 256 * 2.51 * std::numeric_limits<double>::epsilon();
 
 Vec3d closest_on_segment(Vec3d p, Vec3d a, Vec3d b) {
   const double length_squared = squared_norm(b - a);

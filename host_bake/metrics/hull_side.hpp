@@ -15,7 +15,7 @@ namespace palpate::bake {
 /// A hull, prepared for many points. Borrows its arguments.
 class HullSide {
  public:
-  /// @param points     its extreme points, inside the unit ball (up to rounding)
+  /// @param points     its extreme points, within image::kMaxNorm of the origin
   /// @param faces      indices into points, counter-clockwise seen from outside; both sides of a
   /// flat hull
   /// @param dimension  of the hull, as in HullMesh

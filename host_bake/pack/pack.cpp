@@ -23,6 +23,7 @@ struct Content {
   std::vector<std::uint32_t> neighbours;
   std::vector<image::Triangle> triangles;
   std::vector<image::VirtualFace> virtual_faces;
+  std::vector<image::Vertex> culling_vertices;
 };
 
 void refuse_above(std::size_t value, std::size_t limit, const std::string& what) {
@@ -55,8 +56,8 @@ std::vector<std::uint32_t> image_order(const Hierarchy& tree) {
 // link_pieces().
 class PieceWriter {
  public:
-  PieceWriter(const Hierarchy& tree, const Metrics& metrics, Content& out)
-      : tree_(tree), metrics_(metrics), out_(out) {}
+  PieceWriter(const Hierarchy& tree, const Metrics& metrics, bool dropped, Content& out)
+      : tree_(tree), metrics_(metrics), dropped_(dropped), out_(out) {}
 
   void write(std::uint32_t index) {
     const TreePiece& from = tree_.pieces[index];
@@ -64,7 +65,7 @@ class PieceWriter {
     std::copy_n(metrics_.spheres[index].centre.begin(), 3, to.centre);
     to.radius = metrics_.spheres[index].radius;
     to.level = from.level;
-    to.surface_deviation = from.surface_deviation;
+    to.surface_deviation = metrics_.surface_deviation[index];
     to.hausdorff = metrics_.hausdorff[index];
     to.resolution = tree_.levels[from.level].resolution;
     to.flags = (from.all_real ? static_cast<std::uint32_t>(image::PieceFlag::all_real) : 0) |
@@ -72,6 +73,7 @@ class PieceWriter {
     write_vertices(from, to);
     write_neighbours(from, to);
     write_patch(from, to);
+    write_culling(metrics_.culling[index], to);
     out_.pieces.push_back(to);
   }
 
@@ -109,12 +111,28 @@ class PieceWriter {
                                 ? image::kNone
                                 : count_of(out_.virtual_faces.size(), "virtual faces");
     to.virtual_faces = static_cast<std::uint32_t>(from.virtual_faces.size());
-    out_.triangles.insert(out_.triangles.end(), from.triangles.begin(), from.triangles.end());
+    for (image::Triangle t : from.triangles) {
+      if (from.level > 0 || dropped_) t.source = image::kNone;
+      out_.triangles.push_back(t);
+    }
     for (const auto& f : from.virtual_faces) out_.virtual_faces.push_back({{f[0], f[1], f[2]}});
+  }
+
+  void write_culling(const CullingBound& from, image::Piece& to) {
+    to.culling_residual = from.residual;
+    to.culling_vertices = static_cast<std::uint32_t>(from.points.size());
+    to.first_culling_vertex = from.points.empty()
+                                  ? image::kNone
+                                  : count_of(out_.culling_vertices.size(), "culling vertices");
+    for (const std::uint32_t v : from.points) {
+      const PointF& p = tree_.points[v];
+      out_.culling_vertices.push_back({{p[0], p[1], p[2]}, 0});
+    }
   }
 
   const Hierarchy& tree_;
   const Metrics& metrics_;
+  bool dropped_;  // the original surface is not in the tree
   Content& out_;
 };
 
@@ -234,7 +252,7 @@ std::vector<std::byte> pack(const Hierarchy& tree, const Metrics& metrics,
   const std::vector<std::uint32_t> order = image_order(tree);
   Content content;
   content.pieces.reserve(order.size());
-  PieceWriter writer(tree, metrics, content);
+  PieceWriter writer(tree, metrics, facts.dropped_levels > 0, content);
   for (const std::uint32_t i : order) writer.write(i);
   link_pieces(tree, order, content.pieces);
   content.levels = level_table(tree, content.pieces);
@@ -247,6 +265,7 @@ std::vector<std::byte> pack(const Hierarchy& tree, const Metrics& metrics,
   image.add(image::SectionId::neighbours, content.neighbours);
   image.add(image::SectionId::triangles, content.triangles);
   image.add(image::SectionId::virtual_faces, content.virtual_faces);
+  image.add(image::SectionId::culling_vertices, content.culling_vertices);
   return std::move(image).finish();
 }
 

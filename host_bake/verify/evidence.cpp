@@ -47,6 +47,20 @@ std::span<const image::Triangle> patch(const Evidence& evidence, const image::Pi
   return evidence.image.triangles.subspan(piece.first_triangle, piece.triangles);
 }
 
+std::vector<std::uint32_t> alive_at(const ImageView& image, std::uint32_t level) {
+  std::vector<std::uint32_t> alive;
+  for (std::uint32_t i = 0; i < image.pieces.size(); ++i) {
+    const image::Piece& p = image.pieces[i];
+    if (p.level <= level && (p.parent == image::kNone || image.pieces[p.parent].level > level))
+      alive.push_back(i);
+  }
+  return alive;
+}
+
+Proof not_provable(const std::string& invariant) {
+  return {invariant, true, "not provable: the original surface was left out of this image"};
+}
+
 Proof prove_each(const std::string& invariant, std::size_t pieces,
                  const std::function<std::string(std::uint32_t)>& check) {
   std::vector<std::string> wrong(pieces);

@@ -30,6 +30,12 @@ std::span<const PointF> hull_points(const Evidence& evidence, std::uint32_t piec
 /// The triangles of a piece's patch.
 std::span<const image::Triangle> patch(const Evidence& evidence, const image::Piece& piece);
 
+/// The pieces that belong to a level, ascending.
+std::vector<std::uint32_t> alive_at(const ImageView& image, std::uint32_t level);
+
+/// The answer where a proof needs the original surface and the image is without it.
+Proof not_provable(const std::string& invariant);
+
 /// Runs a check on every piece, in parallel. A check returns an empty string, or what is wrong.
 /// The proof's `found` is the number of pieces checked, or the first piece that fails and why.
 Proof prove_each(const std::string& invariant, std::size_t pieces,

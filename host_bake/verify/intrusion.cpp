@@ -81,17 +81,6 @@ CGAL::Bbox_3 box_of(std::span<const PointF> points) {
   return box_of(doubles);
 }
 
-// The pieces that belong to a level.
-std::vector<std::uint32_t> alive_at(const ImageView& image, std::uint32_t level) {
-  std::vector<std::uint32_t> alive;
-  for (std::uint32_t i = 0; i < image.pieces.size(); ++i) {
-    const image::Piece& p = image.pieces[i];
-    if (p.level <= level && (p.parent == image::kNone || image.pieces[p.parent].level > level))
-      alive.push_back(i);
-  }
-  return alive;
-}
-
 std::vector<LevelTriangle> triangles_of(const Evidence& evidence,
                                         const std::vector<std::uint32_t>& pieces) {
   std::vector<LevelTriangle> triangles;

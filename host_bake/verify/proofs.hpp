@@ -35,17 +35,30 @@ Proof prove_adjacency(const Evidence& evidence);
 /// Every hull vertex is inside its piece's sphere (exact).
 Proof prove_spheres_contain(const Evidence& evidence);
 
-/// Every triangle of the source mesh is in exactly one piece of level 0.
+/// Every triangle of the source mesh is in exactly one piece of level 0, and so, by the tree, of
+/// every level.
 Proof prove_sources_complete(const Evidence& evidence);
 
-/// A hull of a free level encloses the hulls of its children (exact).
+/// Every level that has a mesh is an oriented manifold like the original one, and no more of its
+/// faces cross (exact; check() on each).
+Proof prove_levels_are_surfaces(const Evidence& evidence);
+
+// What is measured against the original surface can only be proved where the image holds it; an
+// image without (dropped_levels > 0) says so in `found`.
+
+/// A hull of a free level encloses all pieces of level 0 below it (exact).
 Proof prove_free_levels_enclose(const Evidence& evidence);
 
-/// h(piece) is at least h(child) plus the distance from the child's hull to the piece's, for every
-/// child (to 1e-9): so no descendant is farther outside than h.
+/// No piece of level 0 is farther than h outside the hull of a piece above it, nor farther than the
+/// residual outside its culling hull (to 1e-9).
 Proof prove_hausdorff_bounds(const Evidence& evidence);
 
-/// s is 0 on level 0 and never less at a piece than at its children on levels with a mesh.
+/// No point of a dense sample of a patch (15 a triangle) is farther than s from the original
+/// surface (to 1e-9; CGAL's AABB tree).
+Proof prove_deviation_bounds(const Evidence& evidence);
+
+/// s is 0 on the original surface and never less at a piece than at its children on levels with a
+/// mesh.
 Proof prove_deviation_ordered(const Evidence& evidence);
 
 /// Levels with a mesh come first, the coarser the smaller r, which is positive; free levels have

@@ -9,8 +9,7 @@
 namespace palpate::convex {
 
 struct Hull {
-  /// [count] extreme points, hull coordinates: within 1 of the origin (the object's radius),
-  /// finite.
+  /// [count] extreme points, hull coordinates: within image::kMaxNorm of the origin, finite.
   const image::Vertex* vertices = nullptr;
   std::uint32_t count = 0;  ///< >= 1
   /// [count + 1] into neighbours, or null: no adjacency, every support search scans all vertices.

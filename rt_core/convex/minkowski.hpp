@@ -50,7 +50,8 @@ inline double extent(const HullPair& pair) noexcept { return pair.a.scale + pair
 
 /// No dot product of a unit direction with a point of a - b is computed farther off than this.
 inline double rounding(const HullPair& pair) noexcept {
-  constexpr double kRoundings = 16 * 1.2e-16;  // a transformed point and its dot: 12 operations
+  // A transformed point and its dot: 12 operations, on coordinates up to image::kMaxNorm.
+  constexpr double kRoundings = 24 * 1.2e-16;
   const Vec3d t = pair.b_in_a.translation;
   const auto absolute = [](double v) { return v < 0 ? -v : v; };
   return kRoundings * (extent(pair) + absolute(t.x) + absolute(t.y) + absolute(t.z));

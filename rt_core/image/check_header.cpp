@@ -13,7 +13,7 @@ constexpr std::uint32_t kKnownFlags = static_cast<std::uint32_t>(HeaderFlag::rep
 // Bytes a record, by slot.
 constexpr std::uint32_t kStrides[] = {
     sizeof(Level),         sizeof(Piece),    sizeof(Vertex),     sizeof(std::uint32_t),
-    sizeof(std::uint32_t), sizeof(Triangle), sizeof(VirtualFace)};
+    sizeof(std::uint32_t), sizeof(Triangle), sizeof(VirtualFace), sizeof(Vertex)};
 constexpr std::size_t kKnownSections = sizeof(kStrides) / sizeof(kStrides[0]);
 constexpr SectionId kRequired[] = {SectionId::levels, SectionId::pieces, SectionId::vertices,
                                    SectionId::triangles};
@@ -48,6 +48,13 @@ bool numbers_sound(const Header& header) noexcept {
          within(header.stop_resolution, 0.0f, kLargest) &&
          within(header.stop_deviation_rel, 0.0f, kMaxLength) &&
          within(header.s0_min, 0.0f, kLargest) && within(header.partner_area, 0.0f, kLargest);
+}
+
+// An image without the original surface says what it serves; one with it serves everything.
+bool promise_sound(const Header& header) noexcept {
+  return header.dropped_levels <= kMaxLevels &&
+         (header.dropped_levels > 0) == (header.s0_min > 0) &&
+         (header.dropped_levels > 0 || header.partner_area == 0);
 }
 
 std::uint64_t aligned(std::uint64_t offset) noexcept {
@@ -88,7 +95,7 @@ bool section_sound(const Header& header, std::size_t slot, std::span<const std::
 Status check_header(const Header& header) noexcept {
   const bool sound = header.header_bytes == sizeof(Header) &&
                      (is_newer(header) || reserved_clear(header)) && source_sound(header) &&
-                     numbers_sound(header);
+                     numbers_sound(header) && promise_sound(header);
   return sound ? Status::ok : Status::image_bad_header;
 }
 

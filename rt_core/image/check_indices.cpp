@@ -10,7 +10,7 @@ bool corners_sound(const std::uint32_t (&v)[3], std::uint32_t vertices) noexcept
 }
 
 bool source_sound(const Triangle& triangle, const Piece& piece, const Header& header) noexcept {
-  return piece.level == 0 ? triangle.source < header.source_triangles : triangle.source == kNone;
+  return piece.level == 0 && header.dropped_levels == 0 ? triangle.source < header.source_triangles : triangle.source == kNone;
 }
 
 bool faces_sound(const ImageView& image, const Piece& piece) noexcept {
@@ -102,6 +102,11 @@ Status check_vertices(const ImageView& image) noexcept {
       if (vertex.support_area < least_area) least_area = vertex.support_area;
     }
     if (least_area != piece.min_support_area) return Status::image_bad_piece;
+    for (std::uint32_t i = 0; i < piece.culling_vertices; ++i) {
+      const Vertex& vertex = image.culling_vertices[piece.first_culling_vertex + i];
+      if (!position_sound(vertex) || vertex.support_area != 0) return Status::image_bad_float;
+      if (!in_sphere(vertex, piece)) return Status::image_bad_piece;
+    }
   }
   return Status::ok;
 }

@@ -20,6 +20,7 @@ struct Cursor {
   std::uint64_t neighbours = 0;
   std::uint64_t triangles = 0;
   std::uint64_t virtual_faces = 0;
+  std::uint64_t culling_vertices = 0;
 };
 
 // An optional run starts at the cursor where it has records and nowhere where it has none.
@@ -50,7 +51,9 @@ bool take_runs(const ImageView& image, const Piece& piece, Cursor& cursor) noexc
          take_adjacency(image, piece, cursor) &&
          take(piece.first_triangle, piece.triangles, image.triangles.size(), cursor.triangles) &&
          take(piece.first_virtual_face, piece.virtual_faces, image.virtual_faces.size(),
-              cursor.virtual_faces);
+              cursor.virtual_faces) &&
+         take(piece.first_culling_vertex, piece.culling_vertices, image.culling_vertices.size(),
+              cursor.culling_vertices);
 }
 
 bool all_taken(const ImageView& image, const Cursor& cursor) noexcept {
@@ -58,7 +61,8 @@ bool all_taken(const ImageView& image, const Cursor& cursor) noexcept {
          cursor.neighbour_starts == image.neighbour_starts.size() &&
          cursor.neighbours == image.neighbours.size() &&
          cursor.triangles == image.triangles.size() &&
-         cursor.virtual_faces == image.virtual_faces.size();
+         cursor.virtual_faces == image.virtual_faces.size() &&
+         cursor.culling_vertices == image.culling_vertices.size();
 }
 
 // A free level's pieces have no patch; a patch without virtual faces is all real.
@@ -76,6 +80,12 @@ bool words_sound(const Piece& piece, bool is_newer) noexcept {
   return bits == 0;
 }
 
+bool culling_sound(const Piece& piece) noexcept {
+  if (piece.culling_vertices > kMaxCullingVertices) return false;
+  return piece.culling_vertices == 0 ? piece.culling_residual == piece.hausdorff
+                                     : within(piece.culling_residual, 0.0f, kMaxLength);
+}
+
 bool numbers_sound(const Piece& piece, float level_resolution) noexcept {
   double squared_norm = 0;
   for (const float c : piece.centre) {
@@ -85,7 +95,8 @@ bool numbers_sound(const Piece& piece, float level_resolution) noexcept {
   return squared_norm <= static_cast<double>(kMaxNorm) * static_cast<double>(kMaxNorm) &&
          within(piece.radius, 0.0f, kMaxLength) &&
          within(piece.surface_deviation, 0.0f, kMaxLength) &&
-         within(piece.hausdorff, 0.0f, kMaxLength) && piece.resolution == level_resolution &&
+         within(piece.hausdorff, 0.0f, kMaxLength) && culling_sound(piece) &&
+         piece.resolution == level_resolution &&
          within(piece.min_support_area, kMinArea, kMaxArea);
 }
 

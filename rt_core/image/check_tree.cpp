@@ -103,8 +103,11 @@ Status check_level_totals(const ImageView& image) noexcept {
   for (std::size_t i = 0; i < image.levels.size(); ++i) {
     if (!matches(image.levels[i], totals[i])) return Status::image_bad_level;
   }
-  return image.levels[0].triangles == image.header->source_triangles ? Status::ok
-                                                                     : Status::image_bad_level;
+  const Header& header = *image.header;
+  const bool original = header.dropped_levels == 0;
+  return !original || image.levels[0].triangles == header.source_triangles
+             ? Status::ok
+             : Status::image_bad_level;
 }
 
 Status check_capacities(const ImageView& image) noexcept {

@@ -36,12 +36,16 @@ inline constexpr std::uint32_t kMaxHullVertices = 1u << 22;
 inline constexpr std::uint32_t kMaxOpenPatchTriangles = 16;
 /// Hulls with more vertices than this carry neighbour lists.
 inline constexpr std::uint32_t kAdjacencyAbove = 32;
+/// Culling hulls have no neighbour lists, so they stay this small.
+inline constexpr std::uint32_t kMaxCullingVertices = kAdjacencyAbove;
 
 // Ranges of numbers; lengths and areas for radius 1.
 inline constexpr double kMinRadius_m = 1e-12;
 inline constexpr double kMaxRadius_m = 1e12;
 inline constexpr double kMaxCentre_m = 1e15;     ///< of each |coordinate|
-inline constexpr float kMaxNorm = 1.0f + 1e-5f;  ///< of a vertex and of a sphere's centre
+/// Of a vertex and of a sphere's centre. The original lies in the unit ball (to 1e-5); simplified
+/// vertices may leave it, for they keep the volume.
+inline constexpr float kMaxNorm = 1.5f;
 inline constexpr float kMaxLength = 4.0f;        ///< of a sphere's radius, s, h and delta
 /// Of a support area: the least normal float, so that 1 / D is finite.
 inline constexpr float kMinArea = 1.17549435e-38f;
@@ -66,7 +70,9 @@ enum class SectionId : std::uint32_t {
   neighbours = 4,
   triangles = 5,      ///< Triangle; the patch of each piece of a level that is not free
   virtual_faces = 6,  ///< VirtualFace; hull faces that are not of the mesh
-  // 7 to 15 are for the region engine and later minor versions; they are empty in version 1.0.
+  /// Vertex, with support_area 0; culling hulls of the pieces whose own hull is no tight bound
+  culling_vertices = 7,
+  // 8 to 15 are for the region engine and later minor versions; they are empty in version 1.0.
 };
 inline constexpr std::size_t kSectionSlots = 16;
 
@@ -113,7 +119,10 @@ struct Header {
   std::uint32_t max_patch_triangles;  ///< of one piece
   std::uint32_t max_valence;          ///< longest neighbour list
   std::uint32_t leaf_pieces;          ///< pieces of level 0
-  std::uint32_t reserved1[3];
+  /// Finest levels that were left out, the original surface with them; 0: level 0 is the original
+  /// surface. With s0_min and partner_area, what the image still serves.
+  std::uint32_t dropped_levels;
+  std::uint32_t reserved1[2];
 
   Section sections[kSectionSlots];
   std::uint8_t reserved2[40];
@@ -127,7 +136,8 @@ static_assert(offsetof(Header, sections) == 216);
 /// below its parent's.
 struct Level {
   std::uint32_t pieces;     ///< pieces that belong to this level; 1 on the last
-  std::uint32_t triangles;  ///< of the level's mesh (source_triangles on level 0); 0 on free levels
+  /// Of the level's mesh (source_triangles on the original surface); 0 on free levels.
+  std::uint32_t triangles;
   std::uint32_t free;       ///< 1 where made by hull merging alone (no metric)
   float resolution;         ///< r, Sec. 4.1, for radius 1; 0 on free levels
   float max_surface_deviation_rel;  ///< largest s of its pieces
@@ -161,7 +171,8 @@ struct Piece {
   std::uint32_t level;            ///< level at which the piece was made; the last level at the root
   /// s, Sec. 4.5: no point of the patch is farther from the original surface
   float surface_deviation;
-  float hausdorff;         ///< h, Sec. 4.5: no point of a descendant is farther outside this hull
+  /// h, Sec. 4.5: no point of an original descendant is farther outside this hull
+  float hausdorff;
   float resolution;        ///< r of its level; 0 on free levels
   float min_support_area;  ///< smallest D of its vertices
   // second line
@@ -172,7 +183,15 @@ struct Piece {
   /// into virtual_faces; kNone where there are none and on free levels
   std::uint32_t first_virtual_face;
   std::uint32_t virtual_faces;
-  std::uint32_t reserved[10];
+  /// Of its culling hull, a reduced hull of the original surface below: tighter than the own hull
+  /// widened by h, because patches drift while they are simplified. Into culling_vertices; kNone
+  /// where the own hull serves.
+  std::uint32_t first_culling_vertex;
+  std::uint32_t culling_vertices;  ///< 0 likewise, else at most kMaxCullingVertices
+  /// No point of an original descendant is farther outside the culling hull; hausdorff where that
+  /// is the piece's own.
+  float culling_residual;
+  std::uint32_t reserved[7];
 };
 static_assert(sizeof(Piece) == 128);
 

@@ -35,6 +35,7 @@ ImageView view_of(std::span<const std::byte> bytes) noexcept {
   view.neighbours = records<std::uint32_t>(bytes, Id::neighbours);
   view.triangles = records<image::Triangle>(bytes, Id::triangles);
   view.virtual_faces = records<image::VirtualFace>(bytes, Id::virtual_faces);
+  view.culling_vertices = records<image::Vertex>(bytes, Id::culling_vertices);
   return view;
 }
 

@@ -9,6 +9,7 @@
 
 #include "rt_core/base/status.hpp"
 #include "rt_core/image/format.hpp"
+#include "rt_core/image/region_format.hpp"
 
 namespace palpate {
 
@@ -23,6 +24,10 @@ struct ImageView {
   std::span<const std::uint32_t> neighbours;
   std::span<const image::Triangle> triangles;
   std::span<const image::VirtualFace> virtual_faces;
+  std::span<const image::RegionNode> region_nodes;
+  std::span<const image::RegionTriangle> region_triangles;
+  std::span<const image::Region> regions;
+  std::span<const image::Vertex> culling_vertices;
 };
 
 /// What Header::content_sha256 has to be: the hash of the image with those 32 bytes zero.

@@ -63,6 +63,7 @@ struct ImageParts {
   std::vector<std::uint32_t> neighbours;
   std::vector<image::Triangle> triangles;
   std::vector<image::VirtualFace> virtual_faces;
+  std::vector<image::Vertex> culling_vertices;
 };
 
 inline constexpr std::array<Corners, 12> kBoxFaces = {{{0, 2, 1},
@@ -244,7 +245,7 @@ inline image::Piece put_piece(ImageParts& out, const Node& node) {
   piece.resolution = node.level == 0 ? kResolution : 0.0f;
   piece.first_child = piece.parent = image::kNone;
   piece.first_neighbour_start = piece.first_neighbour = image::kNone;
-  piece.first_triangle = piece.first_virtual_face = image::kNone;
+  piece.first_triangle = piece.first_virtual_face = piece.first_culling_vertex = image::kNone;
   piece.children = static_cast<std::uint32_t>(node.children.size());
   piece.first_vertex = static_cast<std::uint32_t>(out.vertices.size());
   piece.vertices = piece.hull_vertices = static_cast<std::uint32_t>(node.hull.points.size());
@@ -359,6 +360,7 @@ inline AlignedBytes seal(ImageParts parts) {
   append(image::SectionId::neighbours, parts.neighbours);
   append(image::SectionId::triangles, parts.triangles);
   append(image::SectionId::virtual_faces, parts.virtual_faces);
+  append(image::SectionId::culling_vertices, parts.culling_vertices);
   parts.header.total_bytes = bytes.size();
   std::memcpy(bytes.data(), &parts.header, sizeof(parts.header));
   rehash(bytes);

@@ -196,7 +196,7 @@ TEST(FormatPage, Limits_and_version_are_those_of_the_header) {
   says("1.17549435e-38 to 1e9");
   EXPECT_EQ(image::kMinArea, 1.17549435e-38f);
   EXPECT_EQ(image::kMaxArea, 1e9f);
-  EXPECT_EQ(image::kMaxNorm, 1.00001f);
+  EXPECT_EQ(image::kMaxNorm, 1.5f);
   EXPECT_EQ(image::kMaxLength, 4.0f);
   EXPECT_EQ(image::kMinRadius_m, 1e-12);
   EXPECT_EQ(image::kMaxRadius_m, 1e12);

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Records of the region engine's sections: a wide tree over the original triangles, and regions of
+// the surface. docs/FORMAT.md specifies them for readers in other languages.
+//
+// Lengths are for radius 1, relative to the object's centre, as everywhere in an image.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace palpate::image {
+
+inline constexpr std::uint32_t kRegionWidth = 16;     ///< children of a node, at most
+inline constexpr std::uint32_t kMaxRegionDepth = 16;  ///< nodes on a path from the root to a leaf
+inline constexpr std::uint32_t kMaxRegionNodes = 1u << 27;  ///< so that a child has a 32-bit name
+inline constexpr std::uint32_t kMaxRegions = 1u << 16;
+
+/// A node of the wide tree: a box about each child, component by component, so that one box is
+/// tested against all children at once. Nodes lie in breadth-first order.
+///
+/// Box of child i: every point x of a triangle below it has |axis_k . (x - centre)| <= half[k][i]
+/// in exact arithmetic on these floats. The axes are orthonormal to kBoxAxisTolerance. Boxes beyond
+/// the last child repeat the first one's.
+struct RegionNode {
+  float centre[3][kRegionWidth];
+  float axes[9][kRegionWidth];  ///< component c of axis k in row 3 k + c
+  float half[3][kRegionWidth];  ///< half the box's lengths, >= 0
+  std::uint32_t first;          ///< first child: into region_triangles for a leaf, else region_nodes
+  std::uint32_t children;       ///< 1 to kRegionWidth, contiguous
+  std::uint32_t leaf;           ///< 1: children are triangles
+  std::uint32_t parent;         ///< kNone at the root
+  std::uint32_t region;         ///< the region that it is part of; kNone above the regions
+  std::uint32_t first_region;   ///< the regions below it, contiguous; its own one inside a region
+  std::uint32_t regions;        ///< at least 1
+  std::uint32_t reserved[9];
+};
+static_assert(sizeof(RegionNode) == 1024);
+inline constexpr float kBoxAxisTolerance = 1e-6f;
+
+/// A triangle of the source mesh, one cache line. Triangles lie in the order of the leaves.
+struct RegionTriangle {
+  float corners[9];             ///< x y z of each corner, counter-clockwise seen from outside
+  std::uint32_t neighbours[3];  ///< triangle across the edge from corner i to i + 1; kNone: border
+  std::uint32_t region;
+  std::uint32_t piece;   ///< the piece of level 0 whose patch holds it
+  std::uint32_t source;  ///< index in the source mesh; each once
+  std::uint32_t reserved;
+};
+static_assert(sizeof(RegionTriangle) == 64);
+
+/// A connected or nearly connected part of the surface for which the engine keeps one least
+/// distance.
+struct Region {
+  std::uint32_t parent;     ///< node above its root ...
+  std::uint32_t slot;       ///< ... and which child of it the root is
+  std::uint32_t triangles;  ///< of the region, at least 1
+  float reach;              ///< farthest point from the object's centre, rounded up
+  float radius;             ///< half the diagonal of its root's box, rounded up
+  std::uint32_t reserved[3];
+};
+static_assert(sizeof(Region) == 32);
+
+}  // namespace palpate::image
