@@ -73,7 +73,7 @@ enum Health : std::uint16_t {
 /// counts and the pose is not sent; else the other way round.
 struct State {
   bool is_joint_state = false;
-  std::uint32_t sequence = 0;        ///< counts readings of a session from 1, wraps past 0
+  std::uint32_t sequence = 0;        ///< counts readings since power-up from 1, wraps past 0
   std::uint64_t device_time_ns = 0;  ///< when the reading was taken, on the device's clock
   std::array<std::int32_t, 3> position_nm{};
   /// w x y z, in 1 / kUnitQuaternion; length within 1/1024 of 1

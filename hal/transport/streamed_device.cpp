@@ -10,10 +10,14 @@
 namespace palpate::hal {
 namespace {
 
-constexpr std::uint64_t kNsPerSecond = 1'000'000'000;
 /// How long the last packet, which ends the force, may take to leave.
 constexpr std::uint64_t kFarewellWithin_ns = 50'000'000;
 constexpr std::uint64_t kLookEvery_ns = 1'000'000;
+
+bool is_finite(const Vec3d& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+bool is_finite(const Wrench& w) { return is_finite(w.force_N) && is_finite(w.torque_Nm); }
 
 /// Takes nothing: what arrives while the exchange ends is of no use any more.
 class NullSink final : public StreamSink {
@@ -48,21 +52,41 @@ std::optional<DeviceProblem> StreamedDevice::start() {
     return DeviceProblem{"start", describe(status), "plug the device in again"};
   }
   streaming_ = true;
+  forget_last_run();
+  if (options_.threaded) thread_ = std::thread([this] { run(); });
+  auto problem = wait_for_first_reading();
+  if (problem) stop();
+  return problem;
+}
+
+/// While neither thread runs, both ends of the mailboxes are ours.
+void StreamedDevice::forget_last_run() noexcept {
+  static_cast<void>(states_.read(state_));
+  static_cast<void>(commands_.read(command_));
+  state_ = {};
+  command_ = {};
+  commanded_ = false;
+  broken_ = kNoDeviceFault;
+  faults_ = kNoDeviceFault;
+  readings_ = 0;
   stopping_ = false;
-  if (!options_.threaded) return std::nullopt;
-  const std::uint64_t give_up_ns =
-      clock_.now_ns() +
+}
+
+std::optional<DeviceProblem> StreamedDevice::wait_for_first_reading() {
+  const auto patience_ns =
       static_cast<std::uint64_t>(std::llround(1e9 * driver_->first_reading_within_s()));
-  thread_ = std::thread([this] { run(); });
+  const std::uint64_t give_up_ns = clock_.now_ns() + patience_ns;
   while (readings_.load(std::memory_order_relaxed) == 0) {
-    const std::uint64_t now_ns = clock_.now_ns();
-    const bool lost = (faults() & kDeviceLost) != 0;
-    if (lost || now_ns >= give_up_ns) {
-      stop();
-      return lost ? DeviceProblem{"first reading", "the device is gone", "plug it in again"}
-                  : driver_->why_no_reading();
+    if ((faults() & kDeviceLost) != 0) {
+      return DeviceProblem{"first reading", "the device is gone", "plug it in again"};
     }
-    clock_.sleep_until(now_ns + kLookEvery_ns);
+    const std::uint64_t now_ns = clock_.now_ns();
+    if (now_ns >= give_up_ns) return driver_->why_no_reading();
+    if (options_.threaded) {
+      clock_.sleep_until(now_ns + kLookEvery_ns);
+    } else {
+      step();
+    }
   }
   return std::nullopt;
 }
@@ -106,17 +130,23 @@ void StreamedDevice::received(std::span<const std::byte> bytes, std::uint64_t no
   readings_.fetch_add(1, std::memory_order_relaxed);
 }
 
+void StreamedDevice::take_command(std::uint64_t now_ns) noexcept {
+  fresh_ = commands_.read(command_);
+  if (fresh_ && !is_finite(command_.wrench)) publish_fault(kDeviceBadCommand);
+  const bool expired = now_ns >= command_.expires_ns;
+  if (commanded_ && expired) publish_fault(kDeviceSilenced);
+  commanded_ = fresh_ ? !expired : commanded_ && !expired;
+  constexpr std::uint32_t kNoMoreForce = kDeviceSilenced | kDeviceBadCommand;
+  if ((broken_ & kNoMoreForce) == 0) return;
+  command_ = {};
+  commanded_ = false;
+}
+
 void StreamedDevice::send_due() noexcept {
-  const bool fresh = commands_.read(command_);
-  if (fresh && !std::isfinite(command_.wrench.force_N.x + command_.wrench.force_N.y +
-                              command_.wrench.force_N.z + command_.wrench.torque_Nm.x +
-                              command_.wrench.torque_Nm.y + command_.wrench.torque_Nm.z)) {
-    command_ = {};
-    publish_fault(kDeviceBadCommand);
-  }
   const std::uint64_t now_ns = clock_.now_ns();
+  take_command(now_ns);
   OutBuffer buffer;
-  const std::size_t bytes = driver_->poll(command_, fresh, now_ns, buffer);
+  const std::size_t bytes = driver_->poll(command_, fresh_, now_ns, buffer);
   if (bytes > 0 && !transport_->submit(std::span(buffer).first(bytes))) {
     crowded_out_.fetch_add(1, std::memory_order_relaxed);
   }

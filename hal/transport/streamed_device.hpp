@@ -5,7 +5,9 @@
 // The I/O thread owns the transport while it runs. It hands readings to the real-time thread and
 // takes commands from it through mailboxes; so the real-time side never waits, and never enters
 // libusb. A command whose maker has fallen silent expires here, and the device is told to render
-// nothing; the device's own watchdog does the same when this thread falls silent too.
+// nothing; the device's own watchdog does the same when this thread falls silent too. The force
+// does not come back before the next start(): whoever fell silent would find another pose than he
+// left.
 #pragma once
 
 #include <atomic>
@@ -60,7 +62,10 @@ class StreamedDevice final : public Device, private StreamSink {
 
  private:
   void received(std::span<const std::byte> bytes, std::uint64_t now_ns) noexcept override;
+  [[nodiscard]] std::optional<DeviceProblem> wait_for_first_reading();
+  void forget_last_run() noexcept;
   void run() noexcept;
+  void take_command(std::uint64_t now_ns) noexcept;
   void send_due() noexcept;
   void publish_fault(std::uint32_t faults) noexcept;
   void say_farewell() noexcept;
@@ -73,7 +78,9 @@ class StreamedDevice final : public Device, private StreamSink {
   bool streaming_ = false;
   DeviceState state_;         ///< the newest; of the I/O thread
   std::uint32_t broken_ = 0;  ///< faults that no reading takes back
-  DeviceCommand command_;     ///< the last one taken; of the I/O thread
+  DeviceCommand command_;     ///< in force, or expired; of the I/O thread
+  bool fresh_ = false;        ///< it has been taken just now
+  bool commanded_ = false;    ///< there has been one since start()
   Mailbox<DeviceState> states_;
   Mailbox<DeviceCommand> commands_;
   std::atomic<std::uint32_t> faults_{kNoDeviceFault};

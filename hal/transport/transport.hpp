@@ -60,6 +60,9 @@ class Transport {
   Transport(Transport&&) = delete;
   Transport& operator=(Transport&&) = delete;
 
+  /// Of the interface that is claimed: wIndex of requests to it.
+  [[nodiscard]] virtual std::uint8_t interface_number() const noexcept = 0;
+
   // Set-up: each call blocks for at most its timeout.
 
   /// A control transfer that reads; `result.bytes` of `out` are valid.

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/simulator/open_device.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace palpate::hal::simulator {
+namespace {
+
+using namespace protocol;
+
+constexpr double kMicro = 1e-6;
+
+std::int32_t nanometres(double m) { return static_cast<std::int32_t>(std::lround(1e9 * m)); }
+std::int32_t quaternion_unit(double c) {
+  return static_cast<std::int32_t>(std::lround(kUnitQuaternion * c));
+}
+Vec3d from_micro(const std::array<std::int32_t, 3>& v) {
+  return {kMicro * v[0], kMicro * v[1], kMicro * v[2]};
+}
+
+IoResult give(const Packet& packet, std::span<std::byte> out) {
+  const std::size_t length = std::min(out.size(), packet.size());
+  std::copy_n(packet.begin(), length, out.begin());
+  return {IoStatus::ok, length};
+}
+
+}  // namespace
+
+protocol::Capabilities OpenDeviceOptions::default_capabilities() noexcept {
+  protocol::Capabilities c;
+  c.slots = 2;
+  c.rate_Hz = 4000;
+  c.max_force_uN = 20'000'000;
+  c.max_torque_uNm = 1'000'000;
+  c.max_life_us = 20'000;
+  c.max_state_age_us = 50'000;
+  c.image_capacity_bytes = 256 * 1024;
+  return c;
+}
+
+OpenDevice::OpenDevice(OpenDeviceOptions options)
+    : options_(std::move(options)),
+      hand_(options_.hand, 1.0 / options_.capabilities.rate_Hz),
+      end_(options_.capabilities),
+      period_ns_(1'000'000'000 / options_.capabilities.rate_Hz) {}
+
+void OpenDevice::advance_to(std::uint64_t now_ns) {
+  if (next_ns_ == 0) start_ns_ = next_ns_ = now_ns;
+  for (; next_ns_ <= now_ns; next_ns_ += period_ns_) period(next_ns_);
+  now_ns_ = now_ns;
+}
+
+void OpenDevice::period(std::uint64_t now_ns) {
+  const Command& command = end_.output(now_ns);
+  rendered_ = {from_micro(command.force_uN), from_micro(command.torque_uNm)};
+  ++periods_;
+  if (norm(rendered_.force_N) + norm(rendered_.torque_Nm) > 0) ++periods_with_force_;
+  hand_.advance(rendered_);
+
+  const double t_s = 1e-9 * static_cast<double>(now_ns - start_ns_);
+  if (options_.sensor_faults.hit(mock::FaultKind::stuck, t_s) == nullptr) seen_ = hand_.pose();
+  const double clock_s = t_s + options_.sensor_faults.clock_error_s(t_s);
+  const Vec3d& p = seen_.position_m;
+  const Quat& q = seen_.orientation;
+  State state;
+  state.device_time_ns = 1 + static_cast<std::uint64_t>(std::llround(1e9 * clock_s));
+  state.position_nm = {nanometres(p.x), nanometres(p.y), nanometres(p.z)};
+  state.orientation = {quaternion_unit(q.w), quaternion_unit(q.x), quaternion_unit(q.y),
+                       quaternion_unit(q.z)};
+  end_.stamp(state);
+  // One that was not fetched is replaced: the host gets the newest.
+  if (!silent_) ready_ = encode(state);
+}
+
+IoResult OpenDevice::control_in(const ControlRequest& request, std::span<std::byte> out) {
+  if (request.type != kVendorIn || request.request != static_cast<std::uint8_t>(Request::read)) {
+    return {IoStatus::stalled};
+  }
+  switch (PacketType{static_cast<std::uint8_t>(request.value >> 8)}) {
+    case PacketType::capabilities:
+      return give(encode(options_.capabilities), out);
+    case PacketType::image_identity:
+      return give(encode(options_.image), out);
+    default:
+      return {IoStatus::stalled};
+  }
+}
+
+IoResult OpenDevice::control_out(const ControlRequest& request,
+                                 std::span<const std::byte> /*data*/) {
+  if (request.type != kVendorOut || request.value > 1 ||
+      request.request != static_cast<std::uint8_t>(Request::session)) {
+    return {IoStatus::stalled};
+  }
+  if (request.value == 1) {
+    end_.begin_session();
+  } else {
+    end_.end_session();
+  }
+  return {};
+}
+
+void OpenDevice::out(std::span<const std::byte> bytes) { end_.receive(bytes, now_ns_); }
+
+std::size_t OpenDevice::in(std::span<std::byte> buffer) {
+  if (!ready_) return 0;
+  return give(*std::exchange(ready_, std::nullopt), buffer).bytes;
+}
+
+}  // namespace palpate::hal::simulator
