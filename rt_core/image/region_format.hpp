@@ -25,13 +25,13 @@ struct RegionNode {
   float centre[3][kRegionWidth];
   float axes[9][kRegionWidth];  ///< component c of axis k in row 3 k + c
   float half[3][kRegionWidth];  ///< half the box's lengths, >= 0
-  std::uint32_t first;          ///< first child: into region_triangles for a leaf, else region_nodes
-  std::uint32_t children;       ///< 1 to kRegionWidth, contiguous
-  std::uint32_t leaf;           ///< 1: children are triangles
-  std::uint32_t parent;         ///< kNone at the root
-  std::uint32_t region;         ///< the region that it is part of; kNone above the regions
-  std::uint32_t first_region;   ///< the regions below it, contiguous; its own one inside a region
-  std::uint32_t regions;        ///< at least 1
+  std::uint32_t first;         ///< first child: into region_triangles for a leaf, else region_nodes
+  std::uint32_t children;      ///< 1 to kRegionWidth, contiguous
+  std::uint32_t leaf;          ///< 1: children are triangles
+  std::uint32_t parent;        ///< kNone at the root
+  std::uint32_t region;        ///< the region that it is part of; kNone above the regions
+  std::uint32_t first_region;  ///< the regions below it, contiguous; its own one inside a region
+  std::uint32_t regions;       ///< at least 1
   std::uint32_t reserved[9];
 };
 static_assert(sizeof(RegionNode) == 1024);
