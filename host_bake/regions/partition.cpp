@@ -156,6 +156,15 @@ class Divider {
 
 }  // namespace
 
+RegionOptions region_options(double delta_rel) {
+  constexpr double kDeltas = 4;
+  constexpr double kLeast = 0.06;
+  constexpr double kMost = 0.25;
+  RegionOptions options;
+  options.radius = std::clamp(kDeltas * delta_rel, kLeast, kMost);
+  return options;
+}
+
 Partition divide(const NormalMesh& mesh, const RegionOptions& options) {
   return Divider(mesh, options).run();
 }

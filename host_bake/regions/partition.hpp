@@ -22,6 +22,10 @@ struct RegionOptions {
   double least_share = 0.25;
 };
 
+/// Regions for contacts within delta_rel: a few deltas large, for smaller ones cost time and larger
+/// ones make the force jump; never so small that a fine delta makes thousands of them.
+RegionOptions region_options(double delta_rel);
+
 /// A binary tree over runs of `faces`; node 0 is the root, children follow their parent.
 struct Partition {
   struct Node {

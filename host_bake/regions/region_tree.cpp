@@ -31,8 +31,7 @@ float above(double v) {
 
 class Builder {
  public:
-  Builder(const NormalMesh& mesh, std::span<const std::uint32_t> pieces, Partition partition)
-      : mesh_(mesh), pieces_(pieces), part_(std::move(partition)) {}
+  Builder(const NormalMesh& mesh, Partition partition) : mesh_(mesh), part_(std::move(partition)) {}
 
   RegionTree run() && {
     fold();
@@ -83,12 +82,8 @@ class Builder {
     node.region = out_.nodes[parent].region;
     if (from.region) {
       node.region = static_cast<std::uint32_t>(out_.regions.size());
-      out_.regions.push_back({.parent = parent,
-                              .slot = slot,
-                              .triangles = from.count,
-                              .reach = 0,
-                              .radius = 0,
-                              .reserved = {}});
+      out_.regions.push_back(
+          {.parent = parent, .slot = slot, .reach = 0, .radius = 0, .reserved = {}});
     }
     node.leaf = Partition::is_group(from) ? 1 : 0;
     out_.nodes.push_back(node);
@@ -233,7 +228,7 @@ class Builder {
       }
       std::fill_n(t.neighbours, 3, image::kNone);
       t.region = region_of_[i];
-      t.piece = pieces_[order_[i]];
+      t.piece = image::kNone;
       t.source = order_[i];
     }
     link_neighbours(place);
@@ -252,7 +247,6 @@ class Builder {
   }
 
   const NormalMesh& mesh_;
-  std::span<const std::uint32_t> pieces_;
   Partition part_;
   std::vector<std::vector<std::uint32_t>> members_;
   std::vector<std::uint32_t> order_;      // faces in the order of the leaves
@@ -262,9 +256,8 @@ class Builder {
 
 }  // namespace
 
-RegionTree build_regions(const NormalMesh& mesh, std::span<const std::uint32_t> piece_of_face,
-                         const RegionOptions& options) {
-  return Builder(mesh, piece_of_face, divide(mesh, options)).run();
+RegionTree build_regions(const NormalMesh& mesh, const RegionOptions& options) {
+  return Builder(mesh, divide(mesh, options)).run();
 }
 
 }  // namespace palpate::bake

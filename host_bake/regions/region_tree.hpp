@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "host_bake/mesh/mesh.hpp"
@@ -23,10 +22,8 @@ struct RegionTree {
 /// fitted box. The root is never a region itself, so that every region has a parent that holds its
 /// box.
 ///
-/// @param piece_of_face  [faces] the piece of level 0 that holds a face, as the image numbers it
-/// Deterministic, also across numbers of threads. Throws InputRefused where a limit of the format
-/// is passed. O(n log^2 n).
-RegionTree build_regions(const NormalMesh& mesh, std::span<const std::uint32_t> piece_of_face,
-                         const RegionOptions& options);
+/// RegionTriangle::piece is left kNone: pack() knows the image's pieces. Deterministic, also across
+/// numbers of threads. Throws InputRefused where a limit of the format is passed. O(n log^2 n).
+RegionTree build_regions(const NormalMesh& mesh, const RegionOptions& options);
 
 }  // namespace palpate::bake

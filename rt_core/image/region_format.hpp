@@ -51,12 +51,11 @@ static_assert(sizeof(RegionTriangle) == 64);
 /// A connected or nearly connected part of the surface for which the engine keeps one least
 /// distance.
 struct Region {
-  std::uint32_t parent;     ///< node above its root ...
-  std::uint32_t slot;       ///< ... and which child of it the root is
-  std::uint32_t triangles;  ///< of the region, at least 1
-  float reach;              ///< farthest point from the object's centre, rounded up
-  float radius;             ///< half the diagonal of its root's box, rounded up
-  std::uint32_t reserved[3];
+  std::uint32_t parent;  ///< node above its root ...
+  std::uint32_t slot;    ///< ... and which child of it the root is
+  float reach;           ///< farthest point from the object's centre, rounded up
+  float radius;          ///< half the diagonal of its root's box, rounded up
+  std::uint32_t reserved[4];
 };
 static_assert(sizeof(Region) == 32);
 

@@ -239,7 +239,7 @@ class Query {
       }
       result_.open_m += width_m(item);
       const double size = static_cast<double>(pair.image_a->regions[item.region].radius);
-      if (item.width > kClosed && size > result_.size_worst) result_.size_worst = size;
+      if (item.width > kClosed && size > result_.s_worst) result_.s_worst = size;
     }
   }
 

@@ -43,7 +43,7 @@ struct QueryMemory {
   const Kernels* kernels = nullptr;
   std::span<levels::PairState> pairs;
   std::span<PairFrame> frames;           ///< [pairs]
-  std::span<std::uint32_t> first_state;  ///< [pairs + 1]
+  std::span<std::uint32_t> first_state;  ///< [pairs], into states
   std::span<RegionState> states;         ///< [sum over pairs of the regions of a]
   std::span<Active> active;              ///< [states]
   std::span<std::uint32_t> queue;        ///< [states]
@@ -60,7 +60,8 @@ struct QueryResult {
   double unresolved_lower_m = 0;  ///< least lower bound of a region that may be nearer than delta;
                                   ///< infinity where there is none
   double open_m = 0;              ///< sum over regions of min(upper, delta) - lower
-  double size_worst = 0;          ///< largest radius of a region that is not resolved, relative
+  double capped_gap_m = 0;        ///< no iteration cap leaves a gap here
+  double s_worst = 0;             ///< largest radius of a region that is not resolved, relative
   std::uint64_t near_regions = 0;
   std::uint64_t queries = 0;  ///< work units
   bool truncated_by_time = false;
