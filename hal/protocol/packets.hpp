@@ -162,8 +162,8 @@ inline constexpr std::uint8_t kInterfaceClass = 0xff;
 inline constexpr std::uint8_t kInterfaceSubclass = 0x50;
 inline constexpr std::uint8_t kInterfaceProtocol = 0x41;
 /// bRequest, to the interface. read: type IN, wValue = packet type << 8 | index, 64 bytes.
-/// session: type OUT, wValue 1 begins, 0 ends, no data.
-enum class Request : std::uint8_t { read = 0x01, session = 0x02 };
+/// session: type OUT, wValue 1 begins, 0 ends, no data. restart: type OUT, no data.
+enum class Request : std::uint8_t { read = 0x01, session = 0x02, restart = 0x03 };
 inline constexpr std::uint8_t kVendorIn = 0xc1;   ///< bmRequestType: vendor, interface
 inline constexpr std::uint8_t kVendorOut = 0x41;  ///< bmRequestType: vendor, interface
 

@@ -2,8 +2,11 @@
 #include "hal/simulator/open_device.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
+
+#include "rt_core/image/view.hpp"
 
 namespace palpate::hal::simulator {
 namespace {
@@ -11,6 +14,18 @@ namespace {
 using namespace protocol;
 
 constexpr double kMicro = 1e-6;
+
+/// Configuration with one interface, the DFU one, in two alternate settings.
+constexpr std::array<std::uint8_t, 36> kUpdateDescriptors{
+    // clang-format off
+    9, 2, 36, 0, 1, 1, 0, 0x80, 50,
+    9, 4, 0, 0, 0, flash::kDfuClass, flash::kDfuSubclass, flash::kDfuModeProtocol, 0,
+    9, 4, 0, 1, 0, flash::kDfuClass, flash::kDfuSubclass, flash::kDfuModeProtocol, 0,
+    9, flash::kFunctionalDescriptorType,
+    flash::kCanDownload | flash::kCanUpload | flash::kManifestationTolerant,
+    0, 0, flash::DfuDevice::kTransferBytes & 0xff, flash::DfuDevice::kTransferBytes >> 8, 0x10, 1,
+    // clang-format on
+};
 
 std::int32_t nanometres(double m) { return static_cast<std::int32_t>(std::lround(1e9 * m)); }
 std::int32_t quaternion_unit(double c) {
@@ -30,13 +45,11 @@ IoResult give(const Packet& packet, std::span<std::byte> out) {
 
 protocol::Capabilities OpenDeviceOptions::default_capabilities() noexcept {
   protocol::Capabilities c;
-  c.slots = 2;
   c.rate_Hz = 4000;
   c.max_force_uN = 20'000'000;
   c.max_torque_uNm = 1'000'000;
   c.max_life_us = 20'000;
   c.max_state_age_us = 50'000;
-  c.image_capacity_bytes = 256 * 1024;
   return c;
 }
 
@@ -44,7 +57,12 @@ OpenDevice::OpenDevice(OpenDeviceOptions options)
     : options_(std::move(options)),
       hand_(options_.hand, 1.0 / options_.capabilities.rate_Hz),
       end_(options_.capabilities),
-      period_ns_(1'000'000'000 / options_.capabilities.rate_Hz) {}
+      period_ns_(1'000'000'000 / options_.capabilities.rate_Hz) {
+  options_.capabilities.slots = options_.flash == nullptr ? 0 : flash::kSlots;
+  options_.capabilities.image_capacity_bytes =
+      options_.flash == nullptr ? 0 : options_.layout.capacity();
+  restart();
+}
 
 void OpenDevice::advance_to(std::uint64_t now_ns) {
   if (next_ns_ == 0) start_ns_ = next_ns_ = now_ns;
@@ -74,32 +92,103 @@ void OpenDevice::period(std::uint64_t now_ns) {
   if (!silent_) ready_ = encode(state);
 }
 
+ImageIdentity OpenDevice::identity() const {
+  ImageIdentity identity;
+  if (!slots_ || slots_->active() == flash::kNone) return identity;
+  const flash::SlotState state = slots_->state(slots_->active());
+  ImageView view;
+  if (validate(state.image, view) != Status::ok) return identity;
+  identity.active_slot = slots_->active();
+  identity.confirmed = state.confirmed;
+  identity.format_major = view.header->format_major;
+  identity.image_bytes = static_cast<std::uint32_t>(state.image.size());
+  identity.sequence = state.sequence;
+  std::copy_n(view.header->content_sha256, identity.content_sha256.size(),
+              identity.content_sha256.begin());
+  return identity;
+}
+
 IoResult OpenDevice::control_in(const ControlRequest& request, std::span<std::byte> out) {
-  if (request.type != kVendorIn || request.request != static_cast<std::uint8_t>(Request::read)) {
-    return {IoStatus::stalled};
-  }
+  if (request.type == flash::kDfuIn) return update(request, {}, out);
+  if (request.type == kVendorIn) return vendor_in(request, out);
+  constexpr ControlRequest kGetConfiguration{0x80, 0x06, 0x0200, 0};
+  const bool is_configuration = request.type == kGetConfiguration.type &&
+                                request.request == kGetConfiguration.request &&
+                                request.value == kGetConfiguration.value;
+  if (!is_configuration || !dfu_) return {IoStatus::stalled};
+  const std::size_t length = std::min(out.size(), kUpdateDescriptors.size());
+  std::transform(kUpdateDescriptors.begin(),
+                 kUpdateDescriptors.begin() + static_cast<std::ptrdiff_t>(length), out.begin(),
+                 [](std::uint8_t b) { return std::byte{b}; });
+  return {IoStatus::ok, length};
+}
+
+IoResult OpenDevice::vendor_in(const ControlRequest& request, std::span<std::byte> out) {
+  if (request.request != static_cast<std::uint8_t>(Request::read)) return {IoStatus::stalled};
   switch (PacketType{static_cast<std::uint8_t>(request.value >> 8)}) {
     case PacketType::capabilities:
       return give(encode(options_.capabilities), out);
     case PacketType::image_identity:
-      return give(encode(options_.image), out);
+      return give(encode(identity()), out);
     default:
       return {IoStatus::stalled};
   }
 }
 
-IoResult OpenDevice::control_out(const ControlRequest& request,
-                                 std::span<const std::byte> /*data*/) {
-  if (request.type != kVendorOut || request.value > 1 ||
-      request.request != static_cast<std::uint8_t>(Request::session)) {
+IoResult OpenDevice::control_out(const ControlRequest& request, std::span<const std::byte> data) {
+  if (request.type == flash::kDfuOut) return update(request, data, {});
+  if (request.type == kVendorOut) return vendor_out(request);
+  constexpr std::uint8_t kSetInterface = 0x0b;
+  if (request.type != 0x01 || request.request != kSetInterface || !dfu_ ||
+      request.value >= flash::kSlots) {
     return {IoStatus::stalled};
   }
-  if (request.value == 1) {
+  dfu_->select(static_cast<std::uint8_t>(request.value));
+  return {};
+}
+
+IoResult OpenDevice::vendor_out(const ControlRequest& request) {
+  const bool is_session = request.request == static_cast<std::uint8_t>(Request::session);
+  const bool is_restart = request.request == static_cast<std::uint8_t>(Request::restart);
+  if (is_restart && !in_session_) {
+    restart();
+  } else if (is_session && request.value == 1) {
+    in_session_ = true;
     end_.begin_session();
-  } else {
+  } else if (is_session && request.value == 0) {
+    in_session_ = false;
     end_.end_session();
+  } else {
+    return {IoStatus::stalled};
   }
   return {};
+}
+
+IoResult OpenDevice::update(const ControlRequest& request, std::span<const std::byte> data,
+                            std::span<std::byte> out) {
+  if (!dfu_) return {IoStatus::stalled};
+  const flash::DfuAnswer answer =
+      dfu_->handle({flash::DfuRequest{request.request}, request.value}, data, out.size());
+  if (dfu_->busy()) end_.end_session();
+  if (answer.stall) return {IoStatus::stalled};
+  const std::size_t length = std::min(answer.bytes.size(), out.size());
+  std::copy_n(answer.bytes.begin(), length, out.begin());
+  return {IoStatus::ok, out.empty() ? data.size() : length};
+}
+
+void OpenDevice::bus_reset() {
+  in_session_ = false;
+  end_.end_session();
+  if (dfu_) dfu_->bus_reset();
+}
+
+void OpenDevice::restart() {
+  bus_reset();
+  if (options_.flash == nullptr) return;
+  slots_.emplace(*options_.flash, options_.layout);
+  dfu_.emplace(*slots_);
+  const bool holds_image = slots_->start() != flash::kNone && slots_->confirm();
+  end_.set_health(holds_image ? kHealthy : kNoImage);
 }
 
 void OpenDevice::out(std::span<const std::byte> bytes) { end_.receive(bytes, now_ns_); }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "hal/flash/dfu_device.hpp"
 #include "hal/mock/faults.hpp"
 #include "hal/mock/hand.hpp"
 #include "hal/protocol/device_end.hpp"
@@ -16,7 +17,9 @@ namespace palpate::hal::simulator {
 struct OpenDeviceOptions {
   mock::HandParameters hand;
   protocol::Capabilities capabilities = default_capabilities();
-  protocol::ImageIdentity image;  ///< what it says that it holds
+  /// Its flash, which outlives it; null: it holds no images.
+  flash::FlashMemory* flash = nullptr;
+  flash::SlotLayout layout;
   /// stuck and drift, from its first period on
   mock::Faults sensor_faults;
 
@@ -33,10 +36,12 @@ class OpenDevice : public SimulatedDevice {
   IoResult control_out(const ControlRequest& request, std::span<const std::byte> data) override;
   void out(std::span<const std::byte> bytes) override;
   std::size_t in(std::span<std::byte> buffer) override;
-  void bus_reset() override { end_.end_session(); }
+  void bus_reset() override;
 
   // What a test does to it, and sees.
 
+  /// As after power came: its newest image, its self-test.
+  void restart();
   void set_health(std::uint16_t health) noexcept { end_.set_health(health); }
   void set_homing(bool homing) noexcept { end_.set_homing(homing); }
   /// It takes readings but sends none.
@@ -51,6 +56,11 @@ class OpenDevice : public SimulatedDevice {
 
  private:
   void period(std::uint64_t now_ns);
+  [[nodiscard]] protocol::ImageIdentity identity() const;
+  IoResult vendor_in(const ControlRequest& request, std::span<std::byte> out);
+  IoResult vendor_out(const ControlRequest& request);
+  IoResult update(const ControlRequest& request, std::span<const std::byte> data,
+                  std::span<std::byte> out);
 
   OpenDeviceOptions options_;
   mock::Hand hand_;
@@ -65,6 +75,9 @@ class OpenDevice : public SimulatedDevice {
   Pose seen_;  ///< by its encoders
   Wrench rendered_;
   std::optional<protocol::Packet> ready_;
+  bool in_session_ = false;
+  std::optional<flash::Slots> slots_;
+  std::optional<flash::DfuDevice> dfu_;
 };
 
 }  // namespace palpate::hal::simulator

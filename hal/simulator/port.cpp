@@ -26,6 +26,11 @@ IoResult Port::control_out(const ControlRequest& request, std::span<const std::b
   return lost_ ? IoResult{IoStatus::lost} : device_.control_out(request, data);
 }
 
+IoStatus Port::select_alternate(std::uint8_t setting) {
+  // As the host's stack does it: the standard request SET_INTERFACE.
+  return control_out({0x01, 0x0b, setting, interface_number()}, {}, 0).status;
+}
+
 IoResult Port::read(std::span<std::byte> out, std::uint32_t timeout_ms) {
   class FirstOnly final : public StreamSink {
    public:

@@ -33,6 +33,7 @@ class Port final : public Transport {
                       std::uint32_t timeout_ms) override;
   IoResult control_out(const ControlRequest& request, std::span<const std::byte> data,
                        std::uint32_t timeout_ms) override;
+  IoStatus select_alternate(std::uint8_t setting) override;
   IoResult read(std::span<std::byte> out, std::uint32_t timeout_ms) override;
   IoResult write(std::span<const std::byte> data, std::uint32_t timeout_ms) override;
   IoStatus begin_stream() override;

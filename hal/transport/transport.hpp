@@ -71,6 +71,8 @@ class Transport {
   /// A control transfer that writes, or has no data.
   virtual IoResult control_out(const ControlRequest& request, std::span<const std::byte> data,
                                std::uint32_t timeout_ms) = 0;
+  /// Chooses an alternate setting of the interface.
+  virtual IoStatus select_alternate(std::uint8_t setting) = 0;
   /// One transfer from the IN endpoint. `out` has room for whole packets.
   virtual IoResult read(std::span<std::byte> out, std::uint32_t timeout_ms) = 0;
   /// One transfer to the OUT endpoint.
