@@ -10,19 +10,15 @@
 
 namespace palpate::regions {
 
-/// Pairs of pieces that cross, of one region at a time.
-inline constexpr std::uint32_t kMaxCrossings = 16;
-
 /// Working memory of one query at a time; needs no initialisation.
 struct CrossingScratch {
   convex::PenetrationScratch polytope;
-  std::uint32_t piece_a[kMaxCrossings];
-  std::uint32_t piece_b[kMaxCrossings];
+  CrossingList list;
 };
 
 /// In the coordinates of a, lengths in units. Moving a by depth * normal parts the two pieces.
 struct Crossing {
-  double depth = 0;
+  double depth = -1;
   Vec3d point_a{};
   Vec3d point_b{};
   Vec3d normal{};
@@ -31,11 +27,11 @@ struct Crossing {
   bool exact = true;
 };
 
-/// The deepest overlap of the convex pieces (level 0) of a pair of triangles that cross.
+/// The deepest overlap of the pairs of pieces in scratch.list, which is not empty.
 ///
-/// Depth and direction are those of convex pieces, as in the levels engine: they go to zero as the
-/// triangles part. Cost: one penetration query.
-Crossing crossing_of(const levels::PairState& pair, std::uint32_t triangle_a,
-                     std::uint32_t triangle_b, CrossingScratch& scratch) noexcept;
+/// Depth and direction are those of convex pieces of the original surface, as in the levels engine.
+/// They go to zero as the triangles part, and a pair that joins the list joins it with none. Cost:
+/// one penetration query a pair.
+Crossing deepest(const levels::PairState& pair, CrossingScratch& scratch) noexcept;
 
 }  // namespace palpate::regions

@@ -81,7 +81,6 @@ class Query {
       RegionState& state = memory_.states[memory_.first_state[index] + i];
       const double lower = static_cast<double>(sqrt_of(swept[i].squared) - kRounding);
       state.seed = swept[i].seed;
-      state.witness = {};
       if (lower > lower_now(pair, index, i)) prove(pair, state, lower);
     }
   }
@@ -178,7 +177,7 @@ class Query {
       Active& item = active()[index];
       if (item.width <= kClosed) break;
       open_m -= width_m(item);
-      if (!state_of(item).witness.known() && state_of(item).seed != image::kNone) {
+      if (state_of(item).seed != image::kNone) {
         dive_and_climb(item);
         open_m += width_m(item);
         if (truncated_) return;
@@ -197,11 +196,11 @@ class Query {
   void dive_and_climb(Active& item) noexcept {
     RegionState& state = state_of(item);
     const PairFrame& frame = frame_of_item(item);
-    state.witness = dive(*memory_.kernels, frame, *memory_.search, pace_, item.region, state.seed);
+    Witness found = dive(*memory_.kernels, frame, *memory_.search, pace_, item.region, state.seed);
     state.seed = image::kNone;
-    if (state.witness.known()) {
-      climb(*memory_.kernels, frame, *memory_.search, pace_, state.witness);
-    }
+    if (found.known()) climb(*memory_.kernels, frame, *memory_.search, pace_, found);
+    const Witness& old = state.witness;
+    if (found.known() && !(old.known() && old.distance < found.distance)) state.witness = found;
     truncated_ |= !pace_.go_on();
     widen(item);
   }
@@ -329,8 +328,16 @@ class Query {
 
   void report_crossing(const Active& item) noexcept {
     const PairState& pair = pair_of(item);
+    const PairFrame& frame = frame_of_item(item);
     const Witness& witness = state_of(item).witness;
-    const Crossing c = crossing_of(pair, witness.a, witness.b, *memory_.crossing);
+    CrossingScratch& scratch = *memory_.crossing;
+    scratch.list.count = 0;
+    find_crossings(*memory_.kernels, frame, *memory_.search, pace_, item.region, scratch.list);
+    // Only where the budget or rounding kept the search from finding any: the list shall not depend
+    // on how the witness came about.
+    if (scratch.list.count == 0) note_crossing(frame, witness.a, witness.b, scratch.list);
+    if (scratch.list.count == kMaxCrossings) result_.iteration_cap_met = true;
+    const Crossing c = deepest(pair, scratch);
     if (!c.exact) result_.iteration_cap_met = true;
     add(item, {c.point_a, c.point_b, c.normal, -c.depth, c.piece_a, c.piece_b});
   }

@@ -51,6 +51,13 @@ class Search {
     return finish();
   }
 
+  /// Looks at everything within the limit, and keeps what crosses.
+  void collect(const image::Region& region, CrossingList& list) noexcept {
+    crossings_ = &list;
+    visit_root(child_name(region.parent, region.slot));
+    static_cast<void>(finish());
+  }
+
   /// Keeps the nearest child only, from a pair on: finds a witness, and no bound.
   Witness dive(const image::Region& region, std::uint32_t seed) noexcept {
     greedy_ = true;
@@ -196,7 +203,12 @@ class Search {
     }
     pace_.charge(kBatchUnits);
     float squared[kBatch];
-    evaluate(kernels_, frame_, scratch_, squared);
+    const std::uint32_t crossing = evaluate(kernels_, frame_, scratch_, squared);
+    if (crossings_ != nullptr) {
+      note_crossings(crossing);
+      pending_ = 0;
+      return;
+    }
     std::uint32_t nearest = 0;
     for (std::uint32_t i = 1; i < pending_; ++i)
       nearest = squared[i] < squared[nearest] ? i : nearest;
@@ -205,6 +217,14 @@ class Search {
     best_squared_ = squared[nearest];
     out_.best = {scratch_.batch_a[nearest], scratch_.batch_b[nearest], sqrt_of(best_squared_)};
     lower_threshold();
+  }
+
+  void note_crossings(std::uint32_t crossing) noexcept {
+    for (std::uint32_t left = crossing & ((1u << pending_) - 1u); left != 0; left &= left - 1) {
+      const int i = __builtin_ctz(left);
+      note_crossing(frame_, scratch_.batch_a[i], scratch_.batch_b[i], *crossings_);
+    }
+    if (crossings_->count == kMaxCrossings) size_ = 0;  // nothing more can be kept
   }
 
   void lower_threshold() noexcept {
@@ -252,6 +272,7 @@ class Search {
   std::uint32_t size_ = 0;
   std::uint32_t pending_ = 0;
   bool greedy_ = false;
+  CrossingList* crossings_ = nullptr;
 };
 
 std::uint32_t neighbour(const ImageView& image, std::uint32_t triangle, std::uint32_t i) noexcept {
@@ -316,6 +337,23 @@ Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scr
               std::uint32_t region, const Witness& witness, float limit, float tolerance) noexcept {
   return Search(kernels, frame, scratch, pace, witness, limit, tolerance)
       .run(frame.a->regions[region]);
+}
+
+void note_crossing(const PairFrame& frame, std::uint32_t triangle_a, std::uint32_t triangle_b,
+                   CrossingList& list) noexcept {
+  const std::uint32_t a = frame.a->region_triangles[triangle_a].piece;
+  const std::uint32_t b = frame.b->region_triangles[triangle_b].piece;
+  for (std::uint32_t i = 0; i < list.count; ++i) {
+    if (list.piece_a[i] == a && list.piece_b[i] == b) return;
+  }
+  if (list.count == kMaxCrossings) return;
+  list.piece_a[list.count] = a;
+  list.piece_b[list.count++] = b;
+}
+
+void find_crossings(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
+                    Pace& pace, std::uint32_t region, CrossingList& list) noexcept {
+  Search(kernels, frame, scratch, pace, {}, kRounding, 0).collect(frame.a->regions[region], list);
 }
 
 Witness dive(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,

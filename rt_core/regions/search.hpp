@@ -101,6 +101,21 @@ void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratc
 Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
               std::uint32_t region, const Witness& witness, float limit, float tolerance) noexcept;
 
+/// Pairs of pieces (level 0) whose triangles cross, each once; more than fit are left out.
+inline constexpr std::uint32_t kMaxCrossings = 16;
+struct CrossingList {
+  std::uint32_t count = 0;
+  std::uint32_t piece_a[kMaxCrossings] = {};
+  std::uint32_t piece_b[kMaxCrossings] = {};
+};
+void note_crossing(const PairFrame& frame, std::uint32_t triangle_a, std::uint32_t triangle_b,
+                   CrossingList& list) noexcept;
+
+/// Adds the pairs of pieces whose triangles cross in a region, until the list is full or the budget
+/// is used up. Boxes of crossing triangles overlap, so that none is passed over.
+void find_crossings(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
+                    Pace& pace, std::uint32_t region, CrossingList& list) noexcept;
+
 /// A witness of a region by going to the nearest child of both trees, one path only.
 /// @param seed  a child of b to start from
 /// Unknown where the budget ended it. Cost: kMaxRegionDepth boxes of each tree and two batches.

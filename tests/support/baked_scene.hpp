@@ -33,9 +33,12 @@ struct AlignedBytes {
 };
 
 struct BakedBody {
-  explicit BakedBody(bake::Mesh m) : mesh(std::move(m)) {
+  explicit BakedBody(bake::Mesh m, bake::ForEngine engine = bake::ForEngine::levels)
+      : mesh(std::move(m)) {
     bake::BakeReport report;
-    const std::vector<std::byte> image = bake::bake(mesh, bake::check(mesh), {}, {}, report);
+    bake::BakeOptions options;
+    options.engine = engine;
+    const std::vector<std::byte> image = bake::bake(mesh, bake::check(mesh), options, {}, report);
     bytes = std::make_unique<AlignedBytes>(image.size());
     std::memcpy(bytes->data.get(), image.data(), image.size());
     EXPECT_EQ(validate(bytes->span(), view), Status::ok);
@@ -50,7 +53,7 @@ struct BakedScene {
              const Limits& limits = {})
       : bodies(std::move(bodies_)),
         pairs(std::move(pairs_)),
-        memory(required_bytes(scene(), limits)) {
+        memory(required_bytes(scene(), limits, settings.engine)) {
     EXPECT_EQ(create(scene(), settings, limits, memory.span(), engine), Status::ok);
   }
   [[nodiscard]] Scene scene() const { return {bodies, pairs, 0}; }
