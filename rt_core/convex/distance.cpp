@@ -10,6 +10,10 @@
 namespace palpate::convex {
 namespace {
 
+/// Upper bound, relative to the sum of the scales, at which the origin counts as lying on a
+/// simplex.
+constexpr double kOnSimplex = 0.1 * kTouching;
+
 /// Distinct points of a - b with their vertices.
 struct Simplex {
   std::uint32_t count = 0;
@@ -32,6 +36,7 @@ struct Search {
   double upper = std::numeric_limits<double>::infinity();
   double lower = -std::numeric_limits<double>::infinity();  ///< negative: overlap along the normal
   Vec3d normal{};                                           ///< unit, of the lower bound
+  VertexPair start;  ///< the last support point: the next is climbed to from there
   std::uint32_t iterations = 0;
 };
 
@@ -49,13 +54,15 @@ void append(Simplex& s, const DifferencePoint& p) noexcept {
   ++s.count;
 }
 
-DifferencePoint first_point(const Simplex& s) noexcept { return {s.points[0], s.a[0], s.b[0]}; }
+DifferencePoint cached_point(const HullPair& pair, const Cache& cache, std::uint32_t i) noexcept {
+  PALPATE_ASSERT(cache.a[i] < pair.a.count && cache.b[i] < pair.b.count);
+  return difference(pair, cache.a[i], cache.b[i]);
+}
 
 Simplex load(const HullPair& pair, const Cache& cache) noexcept {
   Simplex s;
   for (std::uint32_t i = 0; i < cache.count && i < 4; ++i) {
-    PALPATE_ASSERT(cache.a[i] < pair.a.count && cache.b[i] < pair.b.count);
-    if (!contains(s, cache.a[i], cache.b[i])) append(s, difference(pair, cache.a[i], cache.b[i]));
+    if (!contains(s, cache.a[i], cache.b[i])) append(s, cached_point(pair, cache, i));
   }
   if (s.count == 0) append(s, difference(pair, 0, 0));
   return s;
@@ -112,7 +119,8 @@ void run(const HullPair& pair, double on_simplex, double stop_above, Search& sea
       return;
     }
     const Vec3d normal = (1 / norm(nearest.axis)) * nearest.axis;
-    const DifferencePoint w = support(pair, -nearest.axis, first_point(search.simplex));
+    search.start = farthest(pair, -nearest.axis, search.start).vertices;
+    const DifferencePoint w = difference(pair, search.start.a, search.start.b);
     ++search.iterations;
     const double lower = dot(normal, w.point) - slack;
     if (lower > search.lower) {
@@ -129,33 +137,55 @@ void run(const HullPair& pair, double on_simplex, double stop_above, Search& sea
   --search.simplex.count;
 }
 
-/// Adds a weighted vertex to a witness, once for each distinct vertex.
-void add_weight(std::uint32_t vertex, double weight, std::uint32_t (&vertices)[3],
-                double (&weights)[3], std::uint32_t& count) noexcept {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (vertices[i] != vertex) continue;
-    weights[i] += weight;
-    return;
+/// A witness by its vertices.
+struct Witness {
+  std::uint32_t (&vertices)[3];
+  double (&weights)[3];
+  std::uint32_t count = 0;
+
+  /// Each vertex once; without a loop, for three is all there can be.
+  [[gnu::always_inline]] void add(std::uint32_t vertex, double weight) noexcept {
+    if (!(weight > 0)) return;
+    if (count > 0 && vertex == vertices[0]) {
+      weights[0] += weight;
+    } else if (count > 1 && vertex == vertices[1]) {
+      weights[1] += weight;
+    } else {
+      vertices[count] = vertex;
+      weights[count] = weight;
+      ++count;
+    }
   }
-  vertices[count] = vertex;
-  weights[count] = weight;
-  ++count;
+};
+
+/// From what carries the nearest point of a - b.
+/// @param a, b, points, weights  [kCount]
+/// @param on_a                   [kCount] the vertices of a
+template <std::uint32_t kCount>
+[[gnu::always_inline]] inline void set_witnesses(const std::uint32_t* a, const std::uint32_t* b,
+                                                 const Vec3d* points, const Vec3d* on_a,
+                                                 const double* weights, Distance& out) noexcept {
+  Witness witness_a{out.vertices_a, out.weights_a};
+  Witness witness_b{out.vertices_b, out.weights_b};
+  Vec3d apart{};
+  Vec3d point_a{};
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    witness_a.add(a[i], weights[i]);
+    witness_b.add(b[i], weights[i]);
+    apart += weights[i] * points[i];
+    point_a += weights[i] * on_a[i];
+  }
+  out.count_a = witness_a.count;
+  out.count_b = witness_b.count;
+  out.point_a = point_a;
+  out.point_b = point_a - apart;
+  out.distance = norm(apart);
 }
 
-void set_witnesses(const HullPair& pair, const Search& search, Distance& out) noexcept {
-  Vec3d apart{};
-  for (std::uint32_t i = 0; i < search.simplex.count; ++i) {
-    const double weight = search.weights[i];
-    if (!(weight > 0)) continue;
-    add_weight(search.simplex.a[i], weight, out.vertices_a, out.weights_a, out.count_a);
-    add_weight(search.simplex.b[i], weight, out.vertices_b, out.weights_b, out.count_b);
-    apart += weight * search.simplex.points[i];
-  }
-  for (std::uint32_t i = 0; i < out.count_a; ++i) {
-    out.point_a += out.weights_a[i] * vertex_of_a(pair, out.vertices_a[i]);
-  }
-  out.point_b = out.point_a - apart;
-  out.distance = norm(apart);
+/// After the witnesses, whose own rounding can bring them a hair inside the slab.
+void set_bounds(double lower, Vec3d normal, Distance& out) noexcept {
+  out.normal = normal;
+  out.lower_bound = lower > 0 ? (lower < out.distance ? lower : out.distance) : 0;
 }
 
 /// One search with a shifted by `by`. True where the origin is enclosed then; its simplex goes to
@@ -166,6 +196,7 @@ bool enclosed_when_shifted(const HullPair& pair, Vec3d by, Search& search,
   shifted.translation -= by;
   const HullPair moved{pair.a, pair.b, shifted};
   Search again;
+  again.start = search.start;
   for (std::uint32_t i = 0; i < search.simplex.count; ++i) {
     append(again.simplex, difference(moved, search.simplex.a[i], search.simplex.b[i]));
   }
@@ -223,26 +254,106 @@ State classify(const HullPair& pair, Search& search) noexcept {
   return near ? settle(pair, search) : State::gave_up;
 }
 
+template <std::uint32_t kCount>
+[[gnu::always_inline]] inline void load(const HullPair& pair, const Cache& cache,
+                                        Vec3d (&on_a)[kCount], Vec3d (&points)[kCount]) noexcept {
+  Vec3d on_b = vertex_of_b(pair, cache.b[0]);
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    PALPATE_ASSERT(cache.a[i] < pair.a.count && cache.b[i] < pair.b.count);
+    if (i > 0 && cache.b[i] != cache.b[i - 1]) on_b = vertex_of_b(pair, cache.b[i]);
+    on_a[i] = vertex_of_a(pair, cache.a[i]);
+    points[i] = on_a[i] - on_b;
+  }
+}
+
+template <std::uint32_t kCount>
+[[gnu::always_inline]] inline Nearest nearest_on(const Vec3d (&points)[kCount]) noexcept {
+  if constexpr (kCount == 3) {
+    return nearest_on_triangle(points, 0, 1, 2);
+  } else {
+    return nearest_on_simplex(points, kCount, Carry::any);
+  }
+}
+
+/// The usual answer of a coherent pair, without a Search, whose making would double its cost: all
+/// points of the cached simplex still carry the nearest one, and the bounds meet. The same bits
+/// as search_from() would find.
+/// @param start  the cache's first point; where the answer is no, perhaps a better one to climb
+/// from
+template <std::uint32_t kCount>
+bool still_nearest(const HullPair& pair, const Cache& cache, double stop_above, VertexPair& start,
+                   Distance& out) noexcept {
+  Vec3d on_a[kCount];
+  Vec3d points[kCount];
+  load<kCount>(pair, cache, on_a, points);
+  const Nearest nearest = nearest_on<kCount>(points);
+  const double upper = sqrt_of(nearest.squared);
+  if (nearest.count != kCount || upper <= kOnSimplex * extent(pair)) return false;
+  const double inverse = 1 / norm(nearest.axis);
+  const FarthestPair low = farthest(pair, -nearest.axis, start);
+  const double lower = -low.dot * inverse - rounding(pair);
+  out.iterations = 1;
+  const bool bounded = lower > stop_above || upper - lower <= kDistanceGap * (extent(pair) + upper);
+  if (!bounded || !(lower > 0)) {
+    start = low.vertices;
+    return false;
+  }
+  out.state = State::separated;
+  set_witnesses<kCount>(cache.a, cache.b, points, on_a, nearest.weight, out);
+  set_bounds(lower, inverse * nearest.axis, out);
+  return true;
+}
+
+bool still_nearest(const HullPair& pair, const Cache& cache, double stop_above, VertexPair& start,
+                   Distance& out) noexcept {
+  switch (cache.count) {
+    case 1:
+      return still_nearest<1>(pair, cache, stop_above, start, out);
+    case 2:
+      return still_nearest<2>(pair, cache, stop_above, start, out);
+    case 3:
+      return still_nearest<3>(pair, cache, stop_above, start, out);
+    default:
+      return false;
+  }
+}
+
+void search_from(const HullPair& pair, VertexPair start, double stop_above, Cache& cache,
+                 Distance& out) noexcept {
+  Search search;
+  search.simplex = load(pair, cache);
+  search.start = start;
+  run(pair, kOnSimplex * extent(pair), stop_above, search);
+  out.state = classify(pair, search);
+  out.iterations += search.iterations;
+  const Simplex& s = search.simplex;
+  store(s, cache);
+  if (out.state == State::penetrating) return;
+  Vec3d on_a[4];
+  for (std::uint32_t i = 0; i < s.count; ++i) on_a[i] = vertex_of_a(pair, s.a[i]);
+  switch (s.count) {
+    case 1:
+      set_witnesses<1>(s.a, s.b, s.points, on_a, search.weights, out);
+      break;
+    case 2:
+      set_witnesses<2>(s.a, s.b, s.points, on_a, search.weights, out);
+      break;
+    default:
+      set_witnesses<3>(s.a, s.b, s.points, on_a, search.weights, out);
+  }
+  set_bounds(search.lower, search.normal, out);
+}
+
 }  // namespace
 
 Distance distance(const Hull& a, const Hull& b, const RelativePose& b_in_a, double stop_above,
                   Cache& cache) noexcept {
-  constexpr double kOnSimplex = 0.1 * kTouching;
   PALPATE_ASSERT(a.count > 0 && b.count > 0 && stop_above >= 0);
   const HullPair pair{a, b, b_in_a};
-  Search search;
-  search.simplex = load(pair, cache);
-  run(pair, kOnSimplex * extent(pair), stop_above, search);
   Distance out;
-  out.state = classify(pair, search);
-  out.iterations = search.iterations;
-  store(search.simplex, cache);
-  if (out.state == State::penetrating) return out;
-  set_witnesses(pair, search, out);
-  out.normal = search.normal;
-  out.lower_bound = search.lower > 0 ? search.lower : 0;
-  // The witnesses' own rounding can bring them a hair inside the slab.
-  if (out.lower_bound > out.distance) out.lower_bound = out.distance;
+  VertexPair start{cache.a[0], cache.b[0]};
+  if (still_nearest(pair, cache, stop_above, start, out)) return out;
+  search_from(pair, start, stop_above, cache, out);
   return out;
 }
 

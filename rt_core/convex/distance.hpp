@@ -36,11 +36,12 @@ struct Distance {
   Vec3d point_a{};  ///< witness on a; not set where penetrating
   Vec3d point_b{};  ///< witness on b, in the coordinates of a; not set where penetrating
   Vec3d normal{};   ///< unit, from b to a; zero where penetrating
-  std::uint32_t vertices_a[3] = {};  ///< hull vertices whose convex combination point_a is
-  double weights_a[3] = {};          ///< > 0, sum 1
-  std::uint32_t vertices_b[3] = {};
-  double weights_b[3] = {};
-  std::uint32_t count_a = 0;  ///< 1 to 3 distinct vertices; 0 where penetrating
+  /// [count_a] hull vertices whose convex combination point_a is; entries beyond are not set
+  std::uint32_t vertices_a[3];
+  double weights_a[3];          ///< [count_a] > 0, sum 1
+  std::uint32_t vertices_b[3];  ///< [count_b] likewise
+  double weights_b[3];          ///< [count_b]
+  std::uint32_t count_a = 0;    ///< 1 to 3 distinct vertices; 0 where penetrating
   std::uint32_t count_b = 0;
   std::uint32_t iterations = 0;  ///< support pairs found
 };

@@ -37,24 +37,48 @@ inline DifferencePoint difference(const HullPair& pair, std::uint32_t a, std::ui
   return {vertex_of_a(pair, a) - vertex_of_b(pair, b), a, b};
 }
 
+/// A vertex of a and one of b.
+struct VertexPair {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+};
+
+/// A vertex of a - b, and its dot product with a direction.
+struct FarthestPair {
+  VertexPair vertices;
+  double dot = 0;
+};
+
 /// The vertex of a - b farthest in `direction` (coordinates of a, any length); climbs from `start`.
-inline DifferencePoint support(const HullPair& pair, Vec3d direction,
-                               const DifferencePoint& start) noexcept {
+inline FarthestPair farthest(const HullPair& pair, Vec3d direction, VertexPair start) noexcept {
   const Mat3d& r = pair.b_in_a.rotation;
   const Vec3d in_b = direction.x * r.row0 + direction.y * r.row1 + direction.z * r.row2;
-  return difference(pair, support(pair.a, direction, start.a), support(pair.b, -in_b, start.b));
+  const Farthest a = farthest(pair.a, direction.x, direction.y, direction.z, start.a);
+  const Farthest b = farthest(pair.b, -in_b.x, -in_b.y, -in_b.z, start.b);
+  const double along = dot(direction, pair.b_in_a.translation);
+  return {{a.vertex, b.vertex}, pair.a.scale * a.dot + pair.b.scale * b.dot - along};
+}
+
+/// The same with its point.
+inline DifferencePoint support(const HullPair& pair, Vec3d direction,
+                               const DifferencePoint& start) noexcept {
+  const VertexPair v = farthest(pair, direction, {start.a, start.b}).vertices;
+  return difference(pair, v.a, v.b);
 }
 
 /// Largest extent that a coordinate of either hull about its own origin can have.
 inline double extent(const HullPair& pair) noexcept { return pair.a.scale + pair.b.scale; }
 
-/// No dot product of a unit direction with a point of a - b is computed farther off than this.
+/// No dot product of a unit direction with a point of a - b is computed farther off than this, be
+/// it as in farthest() or from the point.
 inline double rounding(const HullPair& pair) noexcept {
-  // A transformed point and its dot: 12 operations, on coordinates up to image::kMaxNorm.
-  constexpr double kRoundings = 24 * 1.2e-16;
+  // A transformed point or direction and its dot: at most 14 operations, and what rises() passes
+  // over in each hull; on coordinates up to
+  // image::kMaxNorm.
+  constexpr double kRoundings = 64 * 1.2e-16;
   const Vec3d t = pair.b_in_a.translation;
-  const auto absolute = [](double v) { return v < 0 ? -v : v; };
-  return kRoundings * (extent(pair) + absolute(t.x) + absolute(t.y) + absolute(t.z));
+  return kRoundings *
+         (extent(pair) + __builtin_fabs(t.x) + __builtin_fabs(t.y) + __builtin_fabs(t.z));
 }
 
 }  // namespace palpate::convex

@@ -20,6 +20,27 @@ void keep_nearer(Nearest& best, const Nearest& candidate) noexcept {
   if (best.count == 0 || candidate.squared < best.squared) best = candidate;
 }
 
+/// area_normal(), in registers: a call would pass the points through memory.
+[[gnu::always_inline]] inline Vec3d normal_of(const Vec3d& p0, const Vec3d& p1, const Vec3d& p2,
+                                              double& out_scale) noexcept {
+  const Vec3d e01 = p1 - p0;
+  const Vec3d e12 = p2 - p1;
+  const Vec3d e20 = p0 - p2;
+  const double l01 = squared_norm(e01);
+  const double l12 = squared_norm(e12);
+  const double l20 = squared_norm(e20);
+  if (l01 >= l12 && l01 >= l20) {
+    out_scale = l12 * l20;
+    return cross(e12, e20);
+  }
+  if (l12 >= l20) {
+    out_scale = l20 * l01;
+    return cross(e20, e01);
+  }
+  out_scale = l01 * l12;
+  return cross(e01, e12);
+}
+
 /// Where the origin lies, seen from the plane through i, j, k.
 struct Side {
   double height = 0;  ///< six times the signed volume with the origin; > 0 on the side of -normal
@@ -37,7 +58,6 @@ Side side_of_origin(const Vec3d* p, std::uint32_t i, std::uint32_t j, std::uint3
 Nearest enclosed() noexcept {
   Nearest n;
   n.count = 4;
-  for (std::uint32_t i = 0; i < 4; ++i) n.index[i] = i;
   return n;
 }
 
@@ -70,23 +90,8 @@ Nearest nearest_on_tetrahedron(const Vec3d* p, Carry carry) noexcept {
 
 }  // namespace
 
-Vec3d area_normal(Vec3d p0, Vec3d p1, Vec3d p2, double& out_scale) noexcept {
-  const Vec3d e01 = p1 - p0;
-  const Vec3d e12 = p2 - p1;
-  const Vec3d e20 = p0 - p2;
-  const double l01 = squared_norm(e01);
-  const double l12 = squared_norm(e12);
-  const double l20 = squared_norm(e20);
-  if (l01 >= l12 && l01 >= l20) {
-    out_scale = l12 * l20;
-    return cross(e12, e20);
-  }
-  if (l12 >= l20) {
-    out_scale = l20 * l01;
-    return cross(e20, e01);
-  }
-  out_scale = l01 * l12;
-  return cross(e01, e12);
+Vec3d area_normal(const Vec3d& p0, const Vec3d& p1, const Vec3d& p2, double& out_scale) noexcept {
+  return normal_of(p0, p1, p2, out_scale);
 }
 
 Nearest nearest_on_segment(const Vec3d* points, std::uint32_t i, std::uint32_t j) noexcept {
@@ -111,11 +116,11 @@ Nearest nearest_on_segment(const Vec3d* points, std::uint32_t i, std::uint32_t j
 
 Nearest nearest_on_triangle(const Vec3d* points, std::uint32_t i, std::uint32_t j, std::uint32_t k,
                             Carry carry) noexcept {
-  const Vec3d p0 = points[i];
-  const Vec3d p1 = points[j];
-  const Vec3d p2 = points[k];
+  const Vec3d& p0 = points[i];
+  const Vec3d& p1 = points[j];
+  const Vec3d& p2 = points[k];
   double scale = 0;
-  const Vec3d normal = area_normal(p0, p1, p2, scale);
+  const Vec3d normal = normal_of(p0, p1, p2, scale);
   const double normal2 = squared_norm(normal);
   // Barycentric coordinates of the origin's projection, times normal2.
   const double w0 = dot(normal, cross(p1, p2 - p1));

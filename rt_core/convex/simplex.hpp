@@ -14,15 +14,16 @@ struct Nearest {
                        ///< the origin lies on a vertex or edge
   double squared = 0;  ///< squared distance; 0 where the origin is enclosed
   std::uint32_t count =
-      0;  ///< points that carry the nearest one, 1 to 3; 4: the origin is enclosed
-  std::uint32_t index[4] = {};
-  double weight[4] = {};  ///< > 0, sum 1; not set where count is 4
+      0;                   ///< points that carry the nearest one, 1 to 3; 4: the origin is enclosed
+  std::uint32_t index[3];  ///< [count], ascending order not implied; not set where count is 4
+  double weight[3];        ///< [count], > 0, sum 1; not set where count is 4
 };
 
 /// Twice the area vector of a triangle, (p1 - p0) x (p2 - p0), from its two shorter edges: the
 /// least rounding of the three choices. `out_scale` is the product of those edges' squared lengths,
 /// so that |result|^2 = sine^2 * out_scale.
-[[nodiscard]] Vec3d area_normal(Vec3d p0, Vec3d p1, Vec3d p2, double& out_scale) noexcept;
+[[nodiscard]] Vec3d area_normal(const Vec3d& p0, const Vec3d& p1, const Vec3d& p2,
+                                double& out_scale) noexcept;
 
 /// Of a segment; its points may coincide.
 [[nodiscard]] Nearest nearest_on_segment(const Vec3d* points, std::uint32_t i,

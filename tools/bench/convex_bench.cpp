@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::uint32_t kPairs = 20;
 constexpr std::uint32_t kSteps = 1000;
-/// Each query is timed once a pass; its time is the middle_mean() of them.
-constexpr std::uint32_t kPasses = 16;
+/// Each query is timed once a pass; its time is the undisturbed_mean() of them.
+constexpr std::uint32_t kPasses = 32;
 constexpr std::uint32_t kSizes[] = {12, 16, 24, 32, 48, 64, 100, 500};
 
 struct Case {
@@ -34,8 +34,11 @@ struct Case {
 /// Ticks of every query in every pass.
 class Times {
  public:
-  void add(std::size_t query, std::uint64_t ticks) {
-    ticks_[query * kPasses + pass_] = static_cast<std::uint32_t>(ticks);
+  /// Of the query that ran since the reading `last`. Returns the reading now.
+  std::uint64_t add(std::size_t query, std::uint64_t last) {
+    const std::uint64_t now = read_ticks();
+    ticks_[query * kPasses + pass_] = static_cast<std::uint32_t>(now - last);
+    return now;
   }
   void end_pass() { ++pass_; }
 
@@ -43,7 +46,7 @@ class Times {
     static const Stopwatch stopwatch = calibrated();
     std::vector<double> ns;
     for (std::size_t query = 0; query < kPairs * kSteps; ++query) {
-      ns.push_back(stopwatch.ns(middle_mean({&ticks_[query * kPasses], kPasses})));
+      ns.push_back(stopwatch.ns(undisturbed_mean({&ticks_[query * kPasses], kPasses})));
     }
     std::sort(ns.begin(), ns.end());
     state.counters["median_ns"] = ns[ns.size() / 2];
@@ -67,11 +70,11 @@ void measure_palpate(benchmark::State& state, const Case& what) {
       const convex::Hull a = (motion.a.*what.hull)();
       const convex::Hull b = (motion.b.*what.hull)();
       convex::Cache cache;
+      std::uint64_t last = read_ticks();
       for (const RelativePose& pose : motion.poses) {
-        const std::uint64_t begin = read_ticks();
         answers[query] =
             convex::distance(a, b, pose, std::numeric_limits<double>::infinity(), cache);
-        times.add(query++, read_ticks() - begin);
+        last = times.add(query++, last);
       }
     }
     times.end_pass();
@@ -101,10 +104,10 @@ void measure_fcl(benchmark::State& state, const Case& what) {
   for ([[maybe_unused]] const auto pass : state) {
     std::size_t query = 0;
     for (const FclMotion& peer : peers) {
+      std::uint64_t last = read_ticks();
       for (std::uint32_t pose = 0; pose < kSteps; ++pose) {
-        const std::uint64_t begin = read_ticks();
         answers[query] = peer.distance(pose);
-        times.add(query++, read_ticks() - begin);
+        last = times.add(query++, last);
       }
     }
     times.end_pass();
