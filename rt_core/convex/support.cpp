@@ -41,23 +41,22 @@ constexpr std::uint32_t kRun = 32;
 /// The farthest of `count` vertices, a multiple of 4 up to kRun, from `first` on, where it is
 /// farther than `best`. No index is carried along: the bits of the vertices that have the largest
 /// product tell the first of them.
-void scan_run(const Hull& hull, const __m128d (&d)[3], std::uint32_t first, std::uint32_t count,
-              Farthest& best) noexcept {
+[[gnu::always_inline]] inline void scan_run(const Hull& hull, const __m128d (&d)[3],
+                                            std::uint32_t first, std::uint32_t fours,
+                                            Farthest& best) noexcept {
   __m128d products[kRun / 4][2];
   __m128d largest = _mm_set1_pd(best.dot);
-  for (std::uint32_t i = 0; i < count; i += 4) {
-    __m128d(&four)[2] = products[i / 4];
-    four_dots(d, hull.vertices + first + i, four);
-    largest = _mm_max_pd(largest, _mm_max_pd(four[0], four[1]));
+  for (std::uint32_t i = 0; i < fours; ++i) {
+    four_dots(d, hull.vertices + first + 4 * i, products[i]);
+    largest = _mm_max_pd(largest, _mm_max_pd(products[i][0], products[i][1]));
   }
   largest = _mm_max_pd(largest, _mm_shuffle_pd(largest, largest, 1));
   if (!(_mm_cvtsd_f64(largest) > best.dot)) return;
   std::uint32_t met = 0;
-  for (std::uint32_t i = 0; i < count; i += 4) {
-    const __m128d(&four)[2] = products[i / 4];
-    const int low = _mm_movemask_pd(_mm_cmpeq_pd(four[0], largest));
-    const int high = _mm_movemask_pd(_mm_cmpeq_pd(four[1], largest));
-    met |= static_cast<std::uint32_t>(low | high << 2) << i;
+  for (std::uint32_t i = 0; i < fours; ++i) {
+    const int low = _mm_movemask_pd(_mm_cmpeq_pd(products[i][0], largest));
+    const int high = _mm_movemask_pd(_mm_cmpeq_pd(products[i][1], largest));
+    met |= static_cast<std::uint32_t>(low | high << 2) << (4 * i);
   }
   best = {first + static_cast<std::uint32_t>(std::countr_zero(met)), _mm_cvtsd_f64(largest)};
 }
@@ -71,10 +70,11 @@ Farthest scan(const Hull& hull, const Vec3d& direction) noexcept {
 #if defined(__SSE2__)
   const __m128d d[3] = {_mm_set1_pd(direction.x), _mm_set1_pd(direction.y),
                         _mm_set1_pd(direction.z)};
-  for (const std::uint32_t end = hull.count & ~3u; i < end;) {
-    const std::uint32_t count = end - i < kRun ? end - i : kRun;
-    scan_run(hull, d, i, count, best);
-    i += count;
+  while (i + 4 <= hull.count) {
+    const std::uint32_t left = hull.count - i;
+    const std::uint32_t fours = (left < kRun ? left : kRun) / 4;
+    scan_run(hull, d, i, fours, best);
+    i += 4 * fours;
   }
 #endif
   for (; i < hull.count; ++i) {
