@@ -111,11 +111,10 @@ void measure_deviation(const NormalMesh& mesh, double stop_deviation, const Prog
     if (progress)
       progress("deviation", static_cast<double>(l) / static_cast<double>(out.levels.size()));
     std::vector<float> s = surface_deviations(original, out.levels[l].mesh, out.levels[l].patches);
-    const bool too_far =
-        outside_format(out.levels[l].mesh) ||
-        (stop_deviation > 0 && std::any_of(s.begin(), s.end(), [&](float v) {
-           return static_cast<double>(v) > stop_deviation;
-         }));
+    const bool too_far = outside_format(out.levels[l].mesh) ||
+                         (stop_deviation > 0 && std::any_of(s.begin(), s.end(), [&](float v) {
+                            return static_cast<double>(v) > stop_deviation;
+                          }));
     if (too_far) out.levels.resize(l);
     if (!too_far) out.deviations.push_back(std::move(s));
   }
@@ -128,8 +127,8 @@ std::vector<std::byte> pack_without(std::uint32_t dropped, Hierarchy tree, Metri
 }
 
 // Bytes of the finest image within the options' promise and size.
-std::vector<std::byte> pack_required(const Hierarchy& tree, const Metrics& metrics, const BakeOptions& options,
-                                     image::Header facts) {
+std::vector<std::byte> pack_required(const Hierarchy& tree, const Metrics& metrics,
+                                     const BakeOptions& options, image::Header facts) {
   const auto partner_area = static_cast<float>(options.partner_area);
   const auto next_serves = [&](std::uint32_t dropped) {
     const auto s0 = served_s0(tree, metrics, dropped + 1, partner_area);

@@ -36,6 +36,7 @@ bool at_least(double v, double least) noexcept { return v >= least; }  // false 
 
 bool sound(const Settings& s) noexcept {
   return finite(s.delta_m) && s.delta_m > 0 && finite(s.s0) && at_least(s.s0, 0) &&
+         at_least(s.kappa, 0) && s.bounds <= Bounds::paper && s.order <= Order::ratio &&
          finite(s.stiffness_N_per_m) && at_least(s.stiffness_N_per_m, 0) &&
          finite(s.cluster_radius_m) && at_least(s.cluster_radius_m, 0) &&
          at_least(s.max_force_N, 0) && at_least(s.max_torque_Nm, 0);
@@ -103,6 +104,34 @@ bool normalise(const Pose& in, Pose& out) noexcept {
   return true;
 }
 
+/// Does an image without its finest levels serve these settings against this partner?
+bool serves(const ImageView& image, const ImageView& partner, const Settings& settings) noexcept {
+  const image::Header& header = *image.header;
+  if (header.dropped_levels == 0) return true;
+  const image::Level& finest = image.levels[0];
+  const double ratio = partner.header->radius_m / header.radius_m;
+  const double area = static_cast<double>(partner.levels[0].min_support_area_rel) * ratio * ratio;
+  const double s_m = static_cast<double>(finest.max_surface_deviation_rel) * header.radius_m;
+  return !settings.exact && settings.s0 >= static_cast<double>(header.s0_min) &&
+         area >= static_cast<double>(header.partner_area) &&
+         (s_m <= settings.kappa * settings.delta_m);
+}
+
+bool serve(const Engine& engine, const Settings& settings) noexcept {
+  for (const levels::PairState& pair : engine.query.pairs) {
+    if (!serves(*pair.image_a, *pair.image_b, settings) ||
+        !serves(*pair.image_b, *pair.image_a, settings)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+levels::Rules rules_of(const Settings& settings) noexcept {
+  return {settings.exact, settings.interpolate, settings.bounds,
+          settings.order, settings.s0,          settings.kappa};
+}
+
 double largest_unit_m(std::span<const levels::PairState> pairs) noexcept {
   double unit = 0;
   for (const levels::PairState& pair : pairs) unit = pair.unit_m > unit ? pair.unit_m : unit;
@@ -121,8 +150,9 @@ Certificate certify(const levels::QueryResult& found, double delta_m, double uni
   Certificate c;
   const double nearest =
       found.contacts > 0 && found.min_distance_m < delta_m ? found.min_distance_m : delta_m;
-  const double open = found.unresolved_lower_m < nearest ? nearest - found.unresolved_lower_m : 0;
-  c.error_bound_m = open + found.capped_gap_m + kNumericalError * unit_m;
+  const double below = found.unresolved_lower_m < nearest ? nearest - found.unresolved_lower_m : 0;
+  const double above = found.contacts > 0 && found.upper_m > nearest ? found.upper_m - nearest : 0;
+  c.error_bound_m = (below > above ? below : above) + found.capped_gap_m + kNumericalError * unit_m;
   c.s_worst = found.s_worst;
   c.units_used = units;
   c.truncated_by_time = found.truncated_by_time;
@@ -163,12 +193,14 @@ Status create(const Scene& scene, const Settings& settings, const Limits& limits
     set_up(pair, scene, scene.pairs[i]);
     pair.root = engine->query.tree.add_root(static_cast<std::uint16_t>(i), 0, 0);
   }
+  if (!serve(*engine, settings)) return Status::image_too_coarse;
   out_engine = engine;
   return Status::ok;
 }
 
 Status configure(Engine& engine, const Settings& settings) noexcept {
   if (!sound(settings)) return Status::bad_argument;
+  if (!serve(engine, settings)) return Status::image_too_coarse;
   engine.settings = settings;
   return Status::ok;
 }
@@ -185,7 +217,10 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
     levels::move(pair, engine.poses[pair.body_a], engine.poses[pair.body_b]);
   }
   Meter meter(budget, engine.tail_ns + engine.tail_ns / 4);
-  const levels::QueryResult found = levels::query(engine.query, meter);
+  const levels::QueryResult found = levels::query(engine.query, rules_of(settings), meter);
+  if (found.queries > 0) {
+    engine.query.query_ns = smoothed(engine.query.query_ns, meter.refined_ns() / found.queries);
+  }
 
   const std::span<Contact> contacts = engine.query.contacts.first(found.contacts);
   out.contacts = contacts;

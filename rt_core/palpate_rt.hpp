@@ -35,13 +35,31 @@ struct Scene {
   std::uint32_t tool = 0;           ///< the body that the device holds: the wrench is the one on it
 };
 
+/// What bounds the original surface below a pair of pieces.
+enum class Bounds : std::uint8_t {
+  tight,  ///< culling hulls and their residuals
+  paper,  ///< the pieces' own hulls, widened by h (eq. 5)
+};
+
+/// What is refined first while the budget lasts.
+enum class Order : std::uint8_t {
+  deviation,  ///< the largest weighted surface deviation s* (the paper's time-critical mode)
+  nearest,    ///< the least distance
+  ratio,      ///< the largest s* over distance
+};
+
 /// How contacts are found and turned into forces.
 struct Settings {
   double delta_m =
-      0.0005;          ///< contact tolerance delta: features nearer than this are contacts; > 0
-  double s0 = 0.025;   ///< threshold of eq. 7, relative to the radius of the body that loses the
-                       ///< detail; >= 0
+      0.0005;         ///< contact tolerance delta: features nearer than this are contacts; > 0
+  double s0 = 0.025;  ///< threshold of eq. 7, relative to the radius of the body that loses the
+                      ///< detail; >= 0
+  /// Surface deviation allowed, relative to delta: pieces with s > kappa * delta are refined,
+  /// whatever s0 says; this bounds the error of force. >= 0; infinity: no such rule.
+  double kappa = std::numeric_limits<double>::infinity();
   bool exact = false;  ///< refine every pair below delta to the original surface, whatever s0 says
+  Bounds bounds = Bounds::tight;
+  Order order = Order::deviation;  ///< exact queries always go nearest first
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
   double stiffness_N_per_m = 600.0;  ///< of the penalty force of one cluster; >= 0
   double cluster_radius_m =
@@ -116,12 +134,14 @@ class Engine;
 [[nodiscard]] std::size_t required_bytes(const Scene& scene, const Limits& limits) noexcept;
 
 /// Makes an engine inside `memory` (64-byte aligned, at least required_bytes). It needs no
-/// destruction: drop the memory. Errors: bad_argument, not_enough_memory, image_missing_section.
+/// destruction: drop the memory. Errors: bad_argument, not_enough_memory, image_missing_section,
+/// image_too_coarse.
 /// Touches every byte of the memory it will use.
 Status create(const Scene& scene, const Settings& settings, const Limits& limits,
               std::span<std::byte> memory, Engine*& out_engine) noexcept;
 
-/// Replaces the settings between ticks. Errors: bad_argument (nothing is changed).
+/// Replaces the settings between ticks. Errors: bad_argument, image_too_coarse (nothing is
+/// changed).
 Status configure(Engine& engine, const Settings& settings) noexcept;
 
 /// One contact query and its wrench.

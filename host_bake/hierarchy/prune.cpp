@@ -39,8 +39,8 @@ std::optional<float> served_s0(const Hierarchy& tree, const Metrics& metrics, st
   double most = static_cast<double>(std::numeric_limits<float>::min());
   for (std::size_t i = 0; i < tree.pieces.size(); ++i) {
     if (tree.pieces[i].level != stop) continue;
-    most = std::max(most, largest_weighted_deviation(tree, metrics, i,
-                                                     static_cast<double>(partner_area)));
+    most = std::max(
+        most, largest_weighted_deviation(tree, metrics, i, static_cast<double>(partner_area)));
   }
   return std::nextafter(static_cast<float>(most), std::numeric_limits<float>::infinity());
 }
