@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/interpolate.hpp"
 
-#include <limits>
-
 namespace palpate::levels {
 namespace {
 
@@ -35,17 +33,12 @@ class Group {
     double most = 0;
     for (std::uint32_t c = first_child(); c != kNone; c = on_.tree[c].next_sibling) {
       const Node& child = on_.tree[c];
-      if (!on_.tree.in_front(c)) return 1;
-      if ((child.flags & kStopped) == 0) {
-        if (lower_now(pair_, child) < pair_.delta) return 1;
-        continue;  // it rests
-      }
+      const bool open = (child.flags & kStopped) == 0 && is_near(pair_, child);
+      if (!on_.tree.in_front(c) || open) return 1;
       if (static_cast<double>(child.excess) > most) most = static_cast<double>(child.excess);
     }
     if (parents_excess <= 1) return 0;
-    if (most > 1) return 1;
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    return parents_excess == kInfinity ? 1 : (parents_excess - 1) / (parents_excess - most);
+    return parents_excess - 1 >= 1 - most ? 1 : (parents_excess - 1) / (1 - most);
   }
 
   /// Where there is none, its distance counts as delta: no force.
@@ -54,8 +47,8 @@ class Group {
     Node& node = on_.tree[parent_];
     node.contact = 0;
     if (d.lower_bound >= pair_.delta) return {};
-    const LeafContact contact = leaf_contact(pair_, a, b, d, node.cache, pair_.delta,
-                                             on_.meter.queries_left(), on_.scratch);
+    const LeafContact contact =
+        leaf_contact(pair_, a, b, d, node.own, pair_.delta, on_.meter.queries_left(), on_.scratch);
     on_.probe.charge(contact.queries);
     if (!contact.found || contact.interrupted || contact.distance >= pair_.delta) return {};
     keep(pair_, a, b, contact, node);
@@ -97,15 +90,21 @@ bool has_metric(const Interpolation& on, std::uint32_t index) noexcept {
   return !is_free(piece_a(pair, node)) && !is_free(piece_b(pair, node));
 }
 
+bool is_due(const Interpolation& on, std::uint32_t index, std::uint32_t parent) noexcept {
+  const Node& node = on.tree[parent];
+  const bool matters =
+      (on.tree[index].flags & kStopped) != 0 || static_cast<double>(node.excess) < kOwnContactFrom;
+  const PairState& pair = on.pairs[node.pair];
+  return matters && has_metric(on, parent) && is_near(pair, node);
+}
+
 }  // namespace
 
 void interpolate(const Interpolation& on) noexcept {
   for (std::size_t i = 0; i < on.tree.front().size();) {
     const std::uint32_t index = on.tree.front()[i];
     const std::uint32_t parent = on.tree[index].parent;
-    const bool due = (on.tree[index].flags & kStopped) != 0 && parent != kNone &&
-                     on.tree[parent].report != on.tick && has_metric(on, parent);
-    if (!due) {
+    if (parent == kNone || on.tree[parent].report == on.tick || !is_due(on, index, parent)) {
       ++i;
       continue;
     }

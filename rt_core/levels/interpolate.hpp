@@ -25,17 +25,21 @@ struct Interpolation {
   std::uint32_t tick = 0;  ///< marks inner nodes that have been measured
 };
 
-/// Mixes the contacts of stopped nodes with that of their parent.
+/// From this excess of a parent on, its children have all of the contact.
+inline constexpr double kOwnContactFrom = 2;
+
+/// Mixes the contacts of front nodes with that of their parent.
 ///
 /// The paper gives no formula. Let e be how far a node's missing detail is above what the rules
 /// allow (Detail::excess, 1 at the switch). Where a parent has e_p > 1 and all its near children
-/// stopped, the largest of theirs being e_c <= 1, they have the share
-/// (e_p - 1) / (e_p - e_c) of distance, normal and points, and the parent has the rest. At e_p = 1,
-/// where refinement would stop at the parent, that is the parent's contact alone; at e_c = 1, where
-/// a child would be refined, the children's alone: continuous at both. The parents are what the
-/// query passed through, so the paper's conservative refinement below a stop is not needed. A
-/// parent with e_p <= 1 takes its children's place: so the front does not depend on how it came
-/// about. One query for each parent of stopped nodes, while the budget lasts.
+/// stopped, the largest of all its children's being e_c <= 1, they have the share
+/// (e_p - 1) / (1 - e_c), at most all, of distance, normal and points, and the parent has the rest.
+/// At e_p = 1, where refinement would stop at the parent, that is the parent's contact alone; at
+/// e_c = 1, where a child would be refined, the children's alone: continuous at both, and where a
+/// child comes within delta or leaves it. The parents are what the query has passed through, so the
+/// paper's conservative refinement below a stop is not needed. A parent with e_p <= 1 takes its
+/// children's place: so the front does not depend on how it came about. One query for each near
+/// parent of stopped nodes, or with e_p < kOwnContactFrom, while the budget lasts.
 void interpolate(const Interpolation& on) noexcept;
 
 }  // namespace palpate::levels

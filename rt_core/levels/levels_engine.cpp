@@ -29,10 +29,9 @@ constexpr std::uint32_t kRaiseScanShare = 32;
 constexpr std::uint64_t kSpareQueries = 16;
 constexpr std::uint64_t kSpareQueryShare = 8;
 
-/// Measuring goes before splitting.
 struct Earlier {
   bool operator()(const Waiting& a, const Waiting& b) const noexcept {
-    if (a.measured != b.measured) return b.measured;
+    if (a.later != b.later) return b.later;
     if (a.rank != b.rank) return a.rank < b.rank;
     return a.lower_m < b.lower_m || (a.lower_m == b.lower_m && a.node < b.node);
   }
@@ -93,10 +92,7 @@ class Query {
     pair.fresh = false;
   }
 
-  bool is_near(const Node& node) noexcept {
-    const PairState& pair = pair_of(node);
-    return lower_now(pair, node) < pair.delta;
-  }
+  bool is_near(const Node& node) noexcept { return levels::is_near(pair_of(node), node); }
 
   /// All near front nodes wait to be measured.
   void start() noexcept {
@@ -136,8 +132,17 @@ class Query {
   void wait_if_near(std::uint32_t index) noexcept {
     const Node& node = tree_[index];
     const PairState& pair = pair_of(node);
-    const double lower = lower_now(pair, node);
-    if (lower < pair.delta) waiting_.push({lower, lower * pair.unit_m, index, false});
+    if (!is_near(node)) return;
+    const bool later = only_culls(pair, node);
+    const double certain = certain_now(pair, node);
+    waiting_.push({later ? rank(node, certain) : certain, certain * pair.unit_m, index, later});
+  }
+
+  /// Gives no contact itself, but has to be split wherever it is near.
+  bool only_culls(const PairState& pair, const Node& node) const noexcept {
+    const Piece& a = piece_a(pair, node);
+    const Piece& b = piece_b(pair, node);
+    return rules_.exact || is_free(a) || is_free(b);
   }
 
   bool budget_left() noexcept {
@@ -153,23 +158,26 @@ class Query {
 
   void refine() noexcept {
     while (!waiting_.empty() && budget_left()) {
-      const Waiting item = waiting_.top();
+      const std::uint32_t index = waiting_.top().node;
       waiting_.pop();
-      if (item.measured) {
-        split(item.node);
+      if ((tree_[index].flags & kMeasured) != 0) {
+        split(index);
       } else {
-        measure(item.node);
+        measure(index);
       }
     }
   }
 
-  void wait_for_split(std::uint32_t index, bool may_a, bool may_b) noexcept {
-    Node& node = tree_[index];
+  void wait_for_split(std::uint32_t index) noexcept {
+    const Node& node = tree_[index];
     const PairState& pair = pair_of(node);
-    const double lower = lower_now(pair, node);
-    if (may_a) set(node, kRefineA);
-    if (may_b) set(node, kRefineB);
-    waiting_.push({rank(node, lower), lower * pair.unit_m, index, true});
+    const double certain = certain_now(pair, node);
+    waiting_.push({rank(node, certain), certain * pair.unit_m, index, true});
+  }
+
+  static void allow(Node& node, bool a, bool b) noexcept {
+    if (a) set(node, kRefineA);
+    if (b) set(node, kRefineB);
   }
 
   /// What is missing counts for no more than what the parent missed: refinement has an order.
@@ -189,11 +197,13 @@ class Query {
     const Piece& b = piece_b(pair, node);
     set(node, kMeasured);
     const bool leaves = a.children == 0 && b.children == 0;
-    if (!leaves && (rules_.exact || is_free(a) || is_free(b))) {
-      if (probe_.bound(pair, node) >= pair.delta) return rest(node);
+    if (!leaves && only_culls(pair, node)) {
+      const double certain = probe_.bound(pair, node);
+      set_rest(pair, node, certain);
+      if (certain >= pair.delta) return forget_contact(node);
       const bool all = rules_.exact;
-      wait_for_split(index, a.children != 0 && (all || is_free(a)),
-                     b.children != 0 && (all || is_free(b)));
+      allow(node, a.children != 0 && (all || is_free(a)), b.children != 0 && (all || is_free(b)));
+      split(index);
     } else {
       measure_metric(index, pair, a, b);
     }
@@ -203,15 +213,10 @@ class Query {
                       const Piece& b) noexcept {
     Node& node = tree_[index];
     const convex::Distance d = probe_.own(pair, node);
-    if (!is_near(node)) return rest(node);
     const Detail missing = detail(pair, a, b, d, rules_);
     node.s_star = static_cast<float>(missing.s_star);
     node.excess = static_cast<float>(missing.excess);
-    // No contact at this level: what is below may be out of reach altogether.
-    if (d.lower_bound >= pair.delta && probe_.has_tighter(pair, node) && !meter_.out_of_units() &&
-        probe_.bound(pair, node) >= pair.delta) {
-      return rest(node);
-    }
+    if (rests_apart(pair, node, d)) return forget_contact(node);
     const bool refines = missing.refine_a || missing.refine_b;
     if (d.lower_bound < pair.delta) {
       // Overlap of simplified hulls is no contact: the last one, of an ancestor apart, stands.
@@ -222,13 +227,25 @@ class Query {
       node.contact = 0;
     }
     if (refines) {
-      wait_for_split(index, missing.refine_a, missing.refine_b);
+      allow(node, missing.refine_a, missing.refine_b);
+      wait_for_split(index);
     } else {
       set(node, kStopped);
     }
   }
 
-  static void rest(Node& node) noexcept { node.contact = 0; }
+  /// No contact at this level, and what is below is out of reach altogether.
+  bool rests_apart(const PairState& pair, Node& node, const convex::Distance& d) noexcept {
+    if (d.lower_bound >= pair.delta && certain_now(pair, node) < pair.delta &&
+        probe_.has_tighter(pair, node) && !meter_.out_of_units()) {
+      probe_.bound(pair, node);
+    }
+    const double certain = certain_now(pair, node);
+    set_rest(pair, node, d.lower_bound < certain ? d.lower_bound : certain);
+    return !is_near(node);
+  }
+
+  static void forget_contact(Node& node) noexcept { node.contact = 0; }
 
   void split(std::uint32_t index) noexcept {
     const PairState& pair = pair_of(tree_[index]);
@@ -239,7 +256,7 @@ class Query {
     const Piece& piece = split_a ? a : b;
     if (!tree_.split(index, split_a, piece.first_child, piece.children)) {
       result_.truncated_by_memory = true;
-      leave(index, lower_now(pair, tree_[index]) * pair.unit_m);
+      leave(index, certain_now(pair, tree_[index]) * pair.unit_m);
       return;
     }
     const Node& parent = tree_[index];
@@ -247,9 +264,9 @@ class Query {
     for (std::uint32_t child = parent.first_child; child != kNone;
          child = tree_[child].next_sibling) {
       Node& c = tree_[child];
-      begin(pair, c, lower_now(pair, parent));
+      begin(pair, c, certain_now(pair, parent));
       inherit(parent, c);
-      if (squared_norm(towards_a) > 0) seed_cache(pair, c, towards_a);
+      if (squared_norm(towards_a) > 0) probe_.seed(pair, c, towards_a);
       wait_if_near(child);
     }
   }
@@ -261,7 +278,6 @@ class Query {
     child.witness_b = parent.witness_b;
     child.slack = parent.slack;
     child.s_star = parent.s_star;
-    child.excess = parent.excess;
   }
 
   /// From b to a at the last query; any where none is known.
@@ -272,23 +288,17 @@ class Query {
     return static_cast<double>(node.contact) * (vec_cast<double>(node.witness_a) - on_b);
   }
 
-  void seed_cache(const PairState& pair, Node& node, Vec3d towards_a) noexcept {
-    convex::seed(hull_of(*pair.image_a, piece_a(pair, node), pair.scale_a),
-                 hull_of(*pair.image_b, piece_b(pair, node), pair.scale_b), pair.b_in_a, towards_a,
-                 node.cache);
-  }
-
   /// Keeps the contact of two pieces in the node, and reports it where refinement stops here.
   void touch(std::uint32_t index, const PairState& pair, const Piece& a, const Piece& b,
              const convex::Distance& d, bool stops) noexcept {
     Node& node = tree_[index];
-    const LeafContact contact = leaf_contact(pair, a, b, d, node.cache, pair.delta,
-                                             meter_.queries_left(), *memory_.scratch);
+    const LeafContact contact =
+        leaf_contact(pair, a, b, d, node.own, pair.delta, meter_.queries_left(), *memory_.scratch);
     probe_.charge(contact.queries);
     node.contact = 0;
     if (contact.interrupted) {
       result_.truncated_by_units = true;
-      leave_unresolved(lower_now(pair, node) * pair.unit_m, node);
+      leave_unresolved(certain_now(pair, node) * pair.unit_m, node);
     }
     if (!contact.found) return;
     const bool original = !is_simplified(a) && !is_simplified(b);
@@ -305,7 +315,7 @@ class Query {
 
   void unreported(const PairState& pair, const Node& node) noexcept {
     result_.truncated_by_memory = true;
-    leave_unresolved(lower_now(pair, node) * pair.unit_m, node);
+    leave_unresolved(certain_now(pair, node) * pair.unit_m, node);
   }
 
   void leave_unresolved(double lower_m, const Node& node) noexcept {
@@ -340,7 +350,7 @@ class Query {
     for (const std::uint32_t index : tree_.front()) {
       const Node& node = tree_[index];
       if ((node.flags & kStopped) != 0 && is_approximate(node))
-        leave_unresolved(lower_now(pair_of(node), node) * pair_of(node).unit_m, node);
+        leave_unresolved(certain_now(pair_of(node), node) * pair_of(node).unit_m, node);
     }
     report_.finish(result_);
     result_.queries = probe_.queries();
@@ -372,8 +382,19 @@ class Query {
         tree_.collapse(parent);
         tree_[parent].contact = 0;
         clear(tree_[parent], kOfThisTick);
+      } else if (parent != kNone) {
+        renew_detail(tree_[parent]);
       }
     }
+  }
+
+  /// What a parent misses is looked at again, in case that it would stop by now (interpolate.hpp).
+  void renew_detail(Node& node) noexcept {
+    const PairState& pair = pair_of(node);
+    if (!rules_.interpolate || only_culls(pair, node) || !is_near(node) || out_of_budget()) return;
+    const convex::Distance d = probe_.own(pair, node);
+    node.excess = static_cast<float>(
+        detail(pair, piece_a(pair, node), piece_b(pair, node), d, rules_).excess);
   }
 
   bool children_rest(std::uint32_t parent) noexcept {
@@ -387,8 +408,10 @@ class Query {
     Node& node = tree_[index];
     PairState& pair = pair_of(node);
     if (!is_near(node)) return true;
-    prove(pair, node, sphere_distance(pair, piece_a(pair, node), piece_b(pair, node)));
-    return !is_near(node) || probe_.bound(pair, node) >= pair.delta;
+    if (!only_culls(pair, node)) return rests_apart(pair, node, probe_.own(pair, node));
+    const double certain = probe_.bound(pair, node);
+    set_rest(pair, node, certain);
+    return certain >= pair.delta;
   }
 
   /// The least lower bound of a stopped node sets the certificate: the culling hulls may prove more
@@ -399,19 +422,15 @@ class Query {
       const Node& node = tree_[index];
       const PairState& pair = pair_of(node);
       if ((node.flags & kStopped) == 0 || !probe_.has_tighter(pair, node)) continue;
-      const double lower_m = lower_now(pair, node) * pair.unit_m;
-      waiting_.push({lower_m, lower_m, index, false});
+      const double certain_m = certain_now(pair, node) * pair.unit_m;
+      waiting_.push({certain_m, certain_m, index, false});
     }
     const std::uint64_t end = spare_queries();
     while (!waiting_.empty() && probe_.queries() < end && !out_of_budget()) {
       const std::uint32_t index = waiting_.top().node;
       waiting_.pop();
       Node& node = tree_[index];
-      const convex::Cache kept = node.cache;  // of the own hulls, for the next tick
-      const std::uint8_t flags = node.flags;
       probe_.bound(pair_of(node), node);
-      node.cache = kept;
-      node.flags = flags;
     }
     waiting_.clear();
   }

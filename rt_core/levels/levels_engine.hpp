@@ -21,7 +21,7 @@ struct Waiting {
   double rank = 0;     ///< less comes first
   double lower_m = 0;  ///< the proved lower bound of its distance in metres
   std::uint32_t node = 0;
-  bool measured = false;
+  bool later = false;  ///< adds detail: after all that only renews contacts
 };
 
 /// Memory of the query, borrowed from the engine.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "rt_core/base/meter.hpp"
 #include "rt_core/levels/body_pair.hpp"
@@ -19,29 +18,42 @@ inline const image::Piece& piece_b(const PairState& pair, const Node& node) noex
   return pair.image_b->pieces[node.piece_b];
 }
 
-/// Lower bound now: the proved one less what a's points can have moved since.
-double lower_now(const PairState& pair, const Node& node) noexcept;
+/// Node::rest and Node::certain now: less what a's points can have moved since they were proved.
+double rest_now(const PairState& pair, const Node& node) noexcept;
+double certain_now(const PairState& pair, const Node& node) noexcept;
 
-/// Takes over a proof made at this tick's pose, unless what is left of the last one is better.
-void prove(const PairState& pair, Node& node, double lower) noexcept;
+inline bool is_near(const PairState& pair, const Node& node) noexcept {
+  return rest_now(pair, node) < pair.delta;
+}
 
-/// First bound of a node that has none: its spheres, or what its parent has proved.
+/// Takes over a lower bound proved at this tick's pose, unless what is left of the last one is
+/// better.
+void prove(const PairState& pair, Node& node, double certain) noexcept;
+
+/// Sets Node::rest for this tick's pose.
+void set_rest(const PairState& pair, Node& node, double rest) noexcept;
+
+/// First bounds of a node that has none: its spheres, and what its parent is certain of.
 void begin(const PairState& pair, Node& node, double inherited) noexcept;
 
-/// Lower bound of the distance of what is below two overlapping hulls.
-double overlap_bound(const PairState& pair, const Node& node) noexcept;
+inline bool overlaps(const convex::Distance& d) noexcept {
+  return d.state == convex::State::penetrating || d.state == convex::State::touching;
+}
 
-/// Does the queries, charges them and proves the bounds that follow for the original surface.
+/// Does the queries, charges them, and proves the bounds that follow for the original surface.
 class Probe {
  public:
   Probe(const Rules& rules, Meter& meter) noexcept : rules_(rules), meter_(meter) {}
 
-  /// Of the culling hulls: the lower bound, exact up to delta and a little more, so that a node
-  /// rests for some ticks. With Bounds::paper of the hulls themselves, widened by h (eq. 5).
+  /// Of the culling hulls: what is certain then, exact up to delta and a little more, so that a
+  /// node rests for some ticks. With Bounds::paper of the hulls themselves, widened by h (eq. 5).
   double bound(const PairState& pair, Node& node) noexcept;
 
   /// Of the pieces' own hulls, exact up to delta + h + h.
   convex::Distance own(const PairState& pair, Node& node) noexcept;
+
+  /// Starts both kinds of query from a guess of the direction from b to a.
+  static void seed(const PairState& pair, Node& node, Vec3d towards_a) noexcept;
 
   /// Would bound() tell more than own() has?
   [[nodiscard]] bool has_tighter(const PairState& pair, const Node& node) const noexcept {

@@ -70,6 +70,8 @@ bool Report::add(const PairState& pair, Node& node, const LeafContact& contact) 
 void Report::blend(const PairState& pair, const Node& node, const LeafContact& other,
                    double share) noexcept {
   Contact& c = contacts_[node.report];
+  const double lower_m = certain_now(pair, node) * pair.unit_m;  // what was certain before mixing
+  if (lower_m < mixed_lower_m_) mixed_lower_m_ = lower_m;
   c.point_a_m = mixed(share, c.point_a_m, in_world(pair, other.point_a));
   c.point_b_m = mixed(share, c.point_b_m, in_world(pair, other.point_b));
   const Vec3d normal = mixed(share, c.normal, pair.rotation_a * other.normal);
@@ -83,6 +85,7 @@ void Report::finish(QueryResult& result) noexcept {
   std::uint32_t kept = 0;
   result.min_distance_m = kInfinity;
   result.upper_m = upper_m_;
+  if (mixed_lower_m_ < result.unresolved_lower_m) result.unresolved_lower_m = mixed_lower_m_;
   for (std::uint32_t i = 0; i < count_; ++i) {
     const Contact& c = contacts_[i];
     if (c.distance_m == kInfinity) continue;

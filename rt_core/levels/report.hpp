@@ -36,13 +36,15 @@ class Report {
   void blend(const PairState& pair, const Node& node, const LeafContact& other,
              double share) noexcept;
 
-  /// Closes gaps; fills in contacts, min_distance_m and upper_m.
+  /// Closes gaps; fills in contacts, min_distance_m and upper_m, lowers unresolved_lower_m to what
+  /// was mixed.
   void finish(QueryResult& result) noexcept;
 
  private:
   std::span<Contact> contacts_;
   std::uint32_t count_ = 0;
   double upper_m_ = std::numeric_limits<double>::infinity();
+  double mixed_lower_m_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace palpate::levels

@@ -33,9 +33,9 @@ struct AlignedBytes {
 };
 
 struct BakedBody {
-  explicit BakedBody(bake::Mesh m) : mesh(std::move(m)) {
+  explicit BakedBody(bake::Mesh m, const bake::BakeOptions& options = {}) : mesh(std::move(m)) {
     bake::BakeReport report;
-    const std::vector<std::byte> image = bake::bake(mesh, bake::check(mesh), {}, {}, report);
+    const std::vector<std::byte> image = bake::bake(mesh, bake::check(mesh), options, {}, report);
     bytes = std::make_unique<AlignedBytes>(image.size());
     std::memcpy(bytes->data.get(), image.data(), image.size());
     EXPECT_EQ(validate(bytes->span(), view), Status::ok);
