@@ -5,7 +5,8 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS palpate_rt palpate_hal EXPORT PalpateTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 foreach(folder rt_core hal)
-  install(DIRECTORY ${folder} DESTINATION include/palpate FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
+  install(DIRECTORY ${folder} DESTINATION include/palpate FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h"
+    PATTERN "usb" EXCLUDE)
 endforeach()
 install(EXPORT PalpateTargets NAMESPACE Palpate:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Palpate)
 file(WRITE "${PROJECT_BINARY_DIR}/PalpateConfig.cmake"

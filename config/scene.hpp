@@ -33,7 +33,7 @@ struct Body {
   Pose pose;  ///< where it is until something moves it
 };
 
-enum class EngineKind { levels, regions };
+using palpate::EngineKind;
 
 /// One point of the mock hand's script: where the hand wants the tool at a time.
 struct Waypoint {
@@ -56,7 +56,6 @@ struct MockHand {
 
 struct Scene {
   std::filesystem::path file;
-  EngineKind engine = EngineKind::levels;
   /// [engine] and [force]. Unlike the engine's own defaults the wrench is limited: a scene may
   /// drive a device.
   Settings settings{.max_force_N = 3.0, .max_torque_Nm = 0.1};

@@ -18,8 +18,9 @@ constexpr std::string_view kRoles[] = {"tool", "moved", "fixed"};
 
 constexpr Key<Scene> kEngineKeys[] = {
     {"engine", "",
-     Choice<Scene>{kEngines, [](Scene& s, std::size_t i) { s.engine = static_cast<EngineKind>(i); },
-                   [](const Scene& s) { return static_cast<std::size_t>(s.engine); }},
+     Choice<Scene>{kEngines,
+                   [](Scene& s, std::size_t i) { s.settings.engine = static_cast<EngineKind>(i); },
+                   [](const Scene& s) { return static_cast<std::size_t>(s.settings.engine); }},
      "the contact query: `levels` refines convex pieces, `regions` regions of the tool's surface"},
     {"delta_m", "m",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.delta_m; }, kLeast, kMost},
@@ -32,6 +33,9 @@ constexpr Key<Scene> kEngineKeys[] = {
      "absent: `s0` alone decides"},
     {"exact", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.exact; }},
      "refine everything nearer than `delta_m` to the original surface, whatever `s0` says"},
+    {"force_tolerance_N", "N",
+     Real<Scene>{[](Scene& s) -> double& { return s.settings.force_tolerance_N; }, 0, kMost},
+     "`regions`: refinement ends once the certified error of the force is no more"},
     {"interpolate", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.interpolate; }},
      "blend between levels of detail, so that the force has no steps"},
     {"bounds", "",

@@ -34,7 +34,7 @@ enum DeviceFault : std::uint32_t {
   kDeviceOverheated = 1u << 2,  ///< it has reduced its force to protect itself
   kDeviceBadReading = 1u << 3,  ///< a sensor's reading cannot be right
   kDeviceFailed = 1u << 4,      ///< a motor, its power, or the device's own checks
-  kDeviceSilenced = 1u << 5,    ///< it ended the force because commands came too late or were stale
+  kDeviceSilenced = 1u << 5,  ///< the force was ended because commands came too late or were stale
 };
 
 /// One reading of the device.

@@ -20,6 +20,7 @@
 #include "host_bake/metrics/support_area.hpp"
 #include "host_bake/pack/aligned.hpp"
 #include "host_bake/pack/pack.hpp"
+#include "host_bake/regions/region_tree.hpp"
 
 namespace palpate::bake {
 namespace {
@@ -41,6 +42,10 @@ std::size_t peak_resident_bytes() {
 }
 
 void require_in_format(const NormalMesh& mesh, const BakeOptions& options) {
+  if (options.engine != ForEngine::levels && (options.s0_min > 0 || options.max_bytes > 0)) {
+    throw InputRefused("regions need the original surface, so nothing can be left out",
+                       "--s0-min or --max-bytes", "bake with --engine levels, or without them");
+  }
   if (!(options.delta_rel > 0) || options.delta_rel > static_cast<double>(image::kMaxLength)) {
     throw InputRefused("delta out of range", std::to_string(options.delta_rel),
                        "give a length above 0 and at most 4, relative to the radius");
@@ -171,6 +176,7 @@ std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const Ba
   SimplifyReport simplification;
   Simplified simplified;
   simplified.levels = timed(report, "simplify", [&] {
+    if (options.engine == ForEngine::regions) return std::vector<SimplifiedLevel>{};
     return simplify(normal, check, patches, options.stop, progress, simplification);
   });
   report.rejected = simplification.refused;
@@ -187,8 +193,15 @@ std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const Ba
     return measure(tree, simplified.levels, simplified.deviations,
                    support_areas(normal, normals, options.delta_rel), progress);
   });
+  const RegionTree regions = timed(report, "regions", [&] {
+    return options.engine == ForEngine::levels
+               ? RegionTree{}
+               : build_regions(normal, region_options(options.delta_rel));
+  });
   std::vector<std::byte> bytes = timed(report, "pack", [&] {
-    return pack_required(tree, metrics, options, facts_of(normal, check, options));
+    const image::Header facts = facts_of(normal, check, options);
+    return options.engine == ForEngine::levels ? pack_required(tree, metrics, options, facts)
+                                               : pack(tree, metrics, facts, regions);
   });
   timed(report, "validate", [&] { return require_valid(bytes), 0; });
   report.peak_bytes = peak_resident_bytes();

@@ -17,16 +17,25 @@
 
 namespace palpate::bake {
 
+/// Which query engines an image serves. Convex pieces of the original surface are always baked: the
+/// region engine measures overlap by them.
+enum class ForEngine {
+  levels,   ///< pieces of the original surface, simplified levels, free levels
+  regions,  ///< no simplified levels; a wide tree over the triangles
+  both,
+};
+
 struct BakeOptions {
+  ForEngine engine = ForEngine::levels;
   double delta_rel =
       0.01;  ///< contact tolerance that the metrics are made for, relative to the radius
   /// Stop rules of simplification, recorded in the image. The first that applies ends it.
   SimplifyOptions stop;
   double stop_deviation_rel = 0;  ///< no level whose s passes this; 0: no such rule
 
-  // Only what a scene requires (prune.hpp); 0: everything.
-  double s0_min = 0;        ///< the image has to serve every threshold from this up ...
-  double partner_area = 0;  ///< ... against partners with at least these support areas
+  // Only what a scene requires (prune.hpp); 0: everything. For the levels engine only.
+  double s0_min = 0;          ///< the image has to serve every threshold from this up ...
+  double partner_area = 0;    ///< ... against partners with at least these support areas
   std::size_t max_bytes = 0;  ///< the finest image that is no larger
 
   unsigned threads = 0;   ///< 0: all
@@ -43,7 +52,8 @@ struct BakeReport {
 
 /// Bakes a mesh that require_bakeable() let pass. The bytes depend on mesh, check and options only,
 /// not on threads or host. The result has been passed through palpate::validate(). Throws
-/// InputRefused where a limit of the format is met, or where no image serves s0_min in max_bytes.
+/// InputRefused where a limit of the format is met, where no image serves s0_min in max_bytes, or
+/// where either is asked of an image for regions.
 std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const BakeOptions& options,
                             const Progress& progress, BakeReport& out_report);
 

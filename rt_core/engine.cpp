@@ -7,6 +7,7 @@
 #include "rt_core/force/cluster.hpp"
 #include "rt_core/levels/levels_engine.hpp"
 #include "rt_core/palpate_rt.hpp"
+#include "rt_core/regions/regions_engine.hpp"
 
 namespace palpate {
 
@@ -16,8 +17,11 @@ class Engine {
   std::uint32_t bodies = 0;
   std::uint32_t tool = 0;
   Settings settings;
-  std::span<Pose> poses;  // of this tick, normalised
-  levels::QueryMemory query;
+  std::span<Pose> poses;                // of this tick, normalised
+  std::span<levels::PairState> states;  // [pairs]
+  levels::QueryMemory levels;           // of the engine's kind; the other is empty
+  regions::QueryMemory regions;
+  std::span<Contact> contacts;
   std::span<force::Ranked> ranking;
   std::span<force::Cluster> clusters;
   std::uint64_t tail_ns = 0;  // what ticks take from the end of refinement to their own, smoothed
@@ -39,6 +43,7 @@ bool sound(const Settings& s) noexcept {
          at_least(s.kappa, 0) && s.bounds <= Bounds::paper && s.order <= Order::ratio &&
          finite(s.stiffness_N_per_m) && at_least(s.stiffness_N_per_m, 0) &&
          finite(s.cluster_radius_m) && at_least(s.cluster_radius_m, 0) &&
+         finite(s.force_tolerance_N) && at_least(s.force_tolerance_N, 0) &&
          at_least(s.max_force_N, 0) && at_least(s.max_torque_Nm, 0);
 }
 
@@ -57,28 +62,69 @@ bool sound(const Scene& scene, const Limits& limits) noexcept {
          limits.contacts > 0 && limits.clusters > 0;
 }
 
-/// All memory of an engine, in one place: counted and handed out by the same lines.
-Engine* lay_out(Arena& arena, const Scene& scene, const Limits& limits) noexcept {
-  const auto engine = arena.array<Engine>(1);
-  const auto pairs = arena.array<levels::PairState>(scene.pairs.size());
-  const auto poses = arena.array<Pose>(scene.bodies.size());
+// All memory of an engine: counted and handed out by the same lines.
+
+void lay_out_levels(Arena& arena, const Limits& limits, levels::QueryMemory& out) noexcept {
   const auto nodes = arena.array<levels::Node>(limits.nodes);
   const auto front = arena.array<std::uint32_t>(limits.nodes);
   const auto waiting = arena.array<levels::Waiting>(limits.nodes);
+  const auto scratch = arena.array<convex::PenetrationScratch>(1);
+  if (scratch.empty()) return;
+  out.tree = levels::TestTree(nodes, front);
+  out.waiting = waiting;
+  out.scratch = &scratch[0];
+}
+
+std::size_t regions_of(const Scene& scene, const BodyPair& pair) noexcept {
+  return scene.bodies[pair.a].regions.size();
+}
+
+void lay_out_regions(Arena& arena, const Scene& scene, regions::QueryMemory& out) noexcept {
+  std::size_t all = 0;
+  std::size_t most = 0;
+  for (const BodyPair& pair : scene.pairs) {
+    const std::size_t count = regions_of(scene, pair);
+    all += count;
+    most = count > most ? count : most;
+  }
+  out.frames = arena.array<regions::PairFrame>(scene.pairs.size());
+  out.first_state = arena.array<std::uint32_t>(scene.pairs.size());
+  out.states = arena.array<regions::RegionState>(all);
+  out.active = arena.array<regions::Active>(all);
+  out.queue = arena.array<std::uint32_t>(all);
+  out.swept = arena.array<regions::Swept>(most);
+  const auto search = arena.array<regions::SearchScratch>(1);
+  const auto crossing = arena.array<regions::CrossingScratch>(1);
+  if (crossing.empty()) return;
+  out.search = &search[0];
+  out.crossing = &crossing[0];
+}
+
+Engine* lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKind kind) noexcept {
+  const auto engine = arena.array<Engine>(1);
+  const auto states = arena.array<levels::PairState>(scene.pairs.size());
+  const auto poses = arena.array<Pose>(scene.bodies.size());
   const auto contacts = arena.array<Contact>(limits.contacts);
   const auto ranking = arena.array<force::Ranked>(limits.contacts);
   const auto clusters = arena.array<force::Cluster>(limits.clusters);
-  const auto scratch = arena.array<convex::PenetrationScratch>(1);
-  if (engine.empty() || scratch.empty()) return nullptr;
+  levels::QueryMemory levels;
+  regions::QueryMemory regions;
+  if (kind == EngineKind::levels) {
+    lay_out_levels(arena, limits, levels);
+  } else {
+    lay_out_regions(arena, scene, regions);
+  }
+  if (engine.empty() || (levels.scratch == nullptr && regions.crossing == nullptr)) return nullptr;
   Engine& e = engine[0];
   e.poses = poses;
-  e.query.pairs = pairs;
-  e.query.tree = levels::TestTree(nodes, front);
-  e.query.waiting = waiting;
-  e.query.contacts = contacts;
-  e.query.scratch = &scratch[0];
+  e.states = states;
+  e.contacts = contacts;
   e.ranking = ranking;
   e.clusters = clusters;
+  e.levels = levels;
+  e.regions = regions;
+  e.levels.pairs = e.regions.pairs = states;
+  e.levels.contacts = e.regions.contacts = contacts;
   return &e;
 }
 
@@ -118,7 +164,8 @@ bool serves(const ImageView& image, const ImageView& partner, const Settings& se
 }
 
 bool serve(const Engine& engine, const Settings& settings) noexcept {
-  for (const levels::PairState& pair : engine.query.pairs) {
+  if (settings.engine != EngineKind::levels) return true;
+  for (const levels::PairState& pair : engine.states) {
     if (!serves(*pair.image_a, *pair.image_b, settings) ||
         !serves(*pair.image_b, *pair.image_a, settings)) {
       return false;
@@ -145,16 +192,17 @@ std::uint64_t smoothed(std::uint64_t before_ns, std::uint64_t now_ns) noexcept {
   return (3 * before_ns + (now_ns < most ? now_ns : most)) / 4;
 }
 
-Certificate certify(const levels::QueryResult& found, double delta_m, double unit_m,
-                    std::uint64_t units) noexcept {
+/// What both queries say of their answer.
+template <class QueryResult>
+Certificate certify(const QueryResult& found, double upper_m, double delta_m,
+                    double unit_m) noexcept {
   Certificate c;
   const double nearest =
       found.contacts > 0 && found.min_distance_m < delta_m ? found.min_distance_m : delta_m;
   const double below = found.unresolved_lower_m < nearest ? nearest - found.unresolved_lower_m : 0;
-  const double above = found.contacts > 0 && found.upper_m > nearest ? found.upper_m - nearest : 0;
+  const double above = found.contacts > 0 && upper_m > nearest ? upper_m - nearest : 0;
   c.error_bound_m = (below > above ? below : above) + found.capped_gap_m + kNumericalError * unit_m;
   c.s_worst = found.s_worst;
-  c.units_used = units;
   c.truncated_by_time = found.truncated_by_time;
   c.truncated_by_units = found.truncated_by_units;
   c.truncated_by_memory = found.truncated_by_memory;
@@ -162,12 +210,67 @@ Certificate certify(const levels::QueryResult& found, double delta_m, double uni
   return c;
 }
 
+/// What a tick is made of, whichever engine found it.
+struct Found {
+  std::uint32_t contacts = 0;
+  double min_distance_m = 0;
+  std::uint64_t front_nodes = 0;
+  std::uint64_t queries = 0;
+  Certificate certificate;
+};
+
+Found find_by_levels(Engine& engine, Meter& meter) noexcept {
+  const levels::QueryResult found = levels::query(engine.levels, rules_of(engine.settings), meter);
+  if (found.queries > 0) {
+    engine.levels.query_ns = smoothed(engine.levels.query_ns, meter.refined_ns() / found.queries);
+  }
+  return {found.contacts, found.min_distance_m, engine.levels.tree.front().size(), found.queries,
+          certify(found, found.upper_m, engine.settings.delta_m, largest_unit_m(engine.states))};
+}
+
+bool limited(const Budget& budget) noexcept {
+  return budget.clock_ns != nullptr || budget.units != Budget{}.units;
+}
+
+Found find_by_regions(Engine& engine, const Budget& budget, Meter& meter) noexcept {
+  const Settings& s = engine.settings;
+  regions::Demand demand;
+  demand.limited = limited(budget);
+  if (!s.exact && s.stiffness_N_per_m > 0) {
+    demand.tolerance_m = s.force_tolerance_N / s.stiffness_N_per_m;
+  }
+  const regions::QueryResult found = regions::query(engine.regions, demand, meter);
+  Found out{found.contacts, found.min_distance_m, found.near_regions, found.queries,
+            certify(found, found.min_distance_m, s.delta_m, largest_unit_m(engine.states))};
+  out.certificate.force_bound_N = s.stiffness_N_per_m * found.open_m;
+  return out;
+}
+
+bool serves(const ImageView& image, EngineKind kind) noexcept {
+  return !image.pieces.empty() && (kind == EngineKind::levels || !image.regions.empty());
+}
+
+void begin_levels(levels::QueryMemory& memory) noexcept {
+  for (std::uint32_t i = 0; i < memory.pairs.size(); ++i) {
+    memory.pairs[i].root = memory.tree.add_root(static_cast<std::uint16_t>(i), 0, 0);
+  }
+}
+
+void begin_regions(const Scene& scene, regions::QueryMemory& memory) noexcept {
+  memory.kernels = &regions::best_kernels();
+  std::uint32_t first = 0;
+  for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
+    memory.first_state[i] = first;
+    first += static_cast<std::uint32_t>(regions_of(scene, scene.pairs[i]));
+  }
+}
+
 }  // namespace
 
-std::size_t required_bytes(const Scene& scene, const Limits& limits) noexcept {
+std::size_t required_bytes(const Scene& scene, const Limits& limits, EngineKind engine) noexcept {
   if (!sound(scene, limits)) return 0;
   Arena count;
-  static_cast<void>(lay_out(count, scene, limits));
+  static_cast<void>(lay_out(count, scene, limits, engine));
   return count.used();
 }
 
@@ -175,23 +278,26 @@ Status create(const Scene& scene, const Settings& settings, const Limits& limits
               std::span<std::byte> memory, Engine*& out_engine) noexcept {
   if (!sound(scene, limits) || !sound(settings)) return Status::bad_argument;
   for (const ImageView& body : scene.bodies) {
-    if (body.pieces.empty()) return Status::image_missing_section;
+    if (!serves(body, settings.engine)) return Status::image_missing_section;
   }
-  if (memory.size() < required_bytes(scene, limits) ||
+  if (memory.size() < required_bytes(scene, limits, settings.engine) ||
       reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::kAlignment != 0) {
     return Status::not_enough_memory;
   }
   Arena arena(memory);
-  Engine* engine = lay_out(arena, scene, limits);
+  Engine* engine = lay_out(arena, scene, limits, settings.engine);
   if (engine == nullptr) return Status::not_enough_memory;
   engine->pairs = scene.pairs;
   engine->bodies = static_cast<std::uint32_t>(scene.bodies.size());
   engine->tool = scene.tool;
   engine->settings = settings;
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
-    levels::PairState& pair = engine->query.pairs[i];
-    set_up(pair, scene, scene.pairs[i]);
-    pair.root = engine->query.tree.add_root(static_cast<std::uint16_t>(i), 0, 0);
+    set_up(engine->states[i], scene, scene.pairs[i]);
+  }
+  if (settings.engine == EngineKind::levels) {
+    begin_levels(engine->levels);
+  } else {
+    begin_regions(scene, engine->regions);
   }
   if (!serve(*engine, settings)) return Status::image_too_coarse;
   out_engine = engine;
@@ -199,7 +305,7 @@ Status create(const Scene& scene, const Settings& settings, const Limits& limits
 }
 
 Status configure(Engine& engine, const Settings& settings) noexcept {
-  if (!sound(settings)) return Status::bad_argument;
+  if (!sound(settings) || settings.engine != engine.settings.engine) return Status::bad_argument;
   if (!serve(engine, settings)) return Status::image_too_coarse;
   engine.settings = settings;
   return Status::ok;
@@ -212,17 +318,16 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
     if (!normalise(poses[i], engine.poses[i])) return Status::bad_pose;
   }
   const Settings& settings = engine.settings;
-  for (levels::PairState& pair : engine.query.pairs) {
+  for (levels::PairState& pair : engine.states) {
     pair.delta = settings.delta_m / pair.unit_m;
     levels::move(pair, engine.poses[pair.body_a], engine.poses[pair.body_b]);
   }
   Meter meter(budget, engine.tail_ns + engine.tail_ns / 4);
-  const levels::QueryResult found = levels::query(engine.query, rules_of(settings), meter);
-  if (found.queries > 0) {
-    engine.query.query_ns = smoothed(engine.query.query_ns, meter.refined_ns() / found.queries);
-  }
+  const Found found = settings.engine == EngineKind::levels
+                          ? find_by_levels(engine, meter)
+                          : find_by_regions(engine, budget, meter);
 
-  const std::span<Contact> contacts = engine.query.contacts.first(found.contacts);
+  const std::span<Contact> contacts = engine.contacts.first(found.contacts);
   out.contacts = contacts;
   bool clusters_used_up = false;
   out.clusters = force::cluster(contacts, settings.cluster_radius_m, engine.ranking,
@@ -231,10 +336,10 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
                                      engine.tool, engine.poses[engine.tool].position_m, settings);
   out.min_distance_m =
       found.contacts > 0 ? found.min_distance_m : std::numeric_limits<double>::quiet_NaN();
-  out.front_nodes = engine.query.tree.front().size();
+  out.front_nodes = found.front_nodes;
   out.queries = found.queries;
-  out.certificate =
-      certify(found, settings.delta_m, largest_unit_m(engine.query.pairs), meter.used());
+  out.certificate = found.certificate;
+  out.certificate.units_used = meter.used();
   out.certificate.truncated_by_memory |= clusters_used_up;
   engine.tail_ns = smoothed(engine.tail_ns, meter.tail_ns());
   return Status::ok;

@@ -35,13 +35,19 @@ struct Scene {
   std::uint32_t tool = 0;           ///< the body that the device holds: the wrench is the one on it
 };
 
-/// What bounds the original surface below a pair of pieces.
+/// The contact query.
+enum class EngineKind : std::uint8_t {
+  levels,   ///< the paper's: convex pieces, simplified where it cannot be felt
+  regions,  ///< certified bounds of the distance of regions of a's original surface from b
+};
+
+/// What bounds the original surface below a pair of pieces (levels engine).
 enum class Bounds : std::uint8_t {
   tight,  ///< culling hulls and their residuals
   paper,  ///< the pieces' own hulls, widened by h (eq. 5)
 };
 
-/// What is refined first while the budget lasts.
+/// What is refined first while the budget lasts (levels engine).
 enum class Order : std::uint8_t {
   deviation,  ///< the largest weighted surface deviation s* (the paper's time-critical mode)
   nearest,    ///< the least distance
@@ -50,6 +56,7 @@ enum class Order : std::uint8_t {
 
 /// How contacts are found and turned into forces.
 struct Settings {
+  EngineKind engine = EngineKind::levels;  ///< fixed when the engine is made
   double delta_m =
       0.0005;         ///< contact tolerance delta: features nearer than this are contacts; > 0
   double s0 = 0.025;  ///< threshold of eq. 7, relative to the radius of the body that loses the
@@ -61,6 +68,8 @@ struct Settings {
   Bounds bounds = Bounds::tight;
   Order order = Order::deviation;  ///< exact queries always go nearest first
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
+  /// Regions engine: refinement may end once the certified error of the force is no more; 0: exact.
+  double force_tolerance_N = 0;
   double stiffness_N_per_m = 600.0;  ///< of the penalty force of one cluster; >= 0
   double cluster_radius_m =
       0.003;  ///< contacts nearer than this to a cluster's representative join it; >= 0
@@ -80,7 +89,7 @@ struct Limits {
 /// What one tick may spend. Refinement ends at whichever limit is met first; the answer is valid
 /// all the same.
 struct Budget {
-  std::uint64_t units = std::numeric_limits<std::uint64_t>::max();  ///< convex-pair queries
+  std::uint64_t units = std::numeric_limits<std::uint64_t>::max();  ///< see TickResult::queries
   std::uint64_t (*clock_ns)(void* context) = nullptr;  ///< a monotonic clock, or null: units only
   void* clock_context = nullptr;
   std::uint64_t deadline_ns =
@@ -105,6 +114,10 @@ struct Certificate {
                              ///< no contact is reported, of delta
   double s_worst =
       0;  ///< largest weighted surface deviation left unrefined, relative to the radius
+  /// Regions engine: the sizes of the regions' penalty forces, summed, are within this of the true
+  /// ones: stiffness times the sum of all open intervals below delta. Depths of overlap are not
+  /// covered.
+  double force_bound_N = 0;
   std::uint64_t units_used = 0;
   bool truncated_by_time = false;    ///< the clock ended refinement
   bool truncated_by_units = false;   ///< the work units ended refinement
@@ -122,8 +135,9 @@ struct TickResult {
   double min_distance_m =
       std::numeric_limits<double>::quiet_NaN();  ///< least over contacts; NaN where there are none
   std::uint64_t front_nodes =
-      0;                      ///< leaves of the bounding volume test tree at the end of the tick
-  std::uint64_t queries = 0;  ///< convex-pair queries done
+      0;  ///< leaves of the bounding volume test tree at the end of the tick; near regions
+  std::uint64_t queries = 0;  ///< work units: convex-pair queries; for regions, boxes against the
+                              ///< boxes of a node (a batch of triangle pairs counts as 8)
   Certificate certificate;
 };
 
@@ -131,7 +145,8 @@ class Engine;
 
 /// Bytes that create() needs for this scene and these limits; 0 where the scene or the limits are
 /// out of range. O(bodies).
-[[nodiscard]] std::size_t required_bytes(const Scene& scene, const Limits& limits) noexcept;
+[[nodiscard]] std::size_t required_bytes(const Scene& scene, const Limits& limits,
+                                         EngineKind engine = EngineKind::levels) noexcept;
 
 /// Makes an engine inside `memory` (64-byte aligned, at least required_bytes). It needs no
 /// destruction: drop the memory. Errors: bad_argument, not_enough_memory, image_missing_section,
@@ -140,7 +155,8 @@ class Engine;
 Status create(const Scene& scene, const Settings& settings, const Limits& limits,
               std::span<std::byte> memory, Engine*& out_engine) noexcept;
 
-/// Replaces the settings between ticks. Errors: bad_argument, image_too_coarse (nothing is
+/// Replaces the settings between ticks; the kind of engine stays. Errors: bad_argument,
+/// image_too_coarse (nothing is
 /// changed).
 Status configure(Engine& engine, const Settings& settings) noexcept;
 

@@ -47,6 +47,9 @@ std::optional<DeviceProblem> MockDevice::open() {
   sequence_ = 0;
   command_ = {};
   faults_ = kNoDeviceFault;
+  script_ = Faults(options_.faults, options_.fault_seed);
+  line_.clear();
+  unplugged_ = false;
   return std::nullopt;
 }
 
@@ -85,6 +88,7 @@ void MockDevice::run() noexcept {
 }
 
 void MockDevice::begin_at(std::uint64_t time_ns) noexcept {
+  zero_ns_ = time_ns;
   next_ns_ = time_ns + period_ns_;
   publish(time_ns);
 }
@@ -102,7 +106,39 @@ void MockDevice::publish(std::uint64_t time_ns) noexcept {
   state.pose = hand_->pose();
   state.twist = hand_->twist();
   state.faults = faults();
-  states_.write(state);
+  if (options_.faults.empty()) {
+    states_.write(state);
+  } else {
+    publish_faulty(state);
+  }
+}
+
+void MockDevice::publish_faulty(DeviceState state) noexcept {
+  const std::uint64_t now_ns = state.time_ns;
+  const double t_s = seconds(now_ns);
+  const bool was_unplugged = unplugged_;
+  unplugged_ = script_.hit(FaultKind::unplug, t_s) != nullptr;
+  if (unplugged_) {
+    line_.clear();
+    if (was_unplugged) return;
+    faults_.fetch_or(kDeviceLost, std::memory_order_relaxed);
+    state.faults = faults();
+    states_.write(state);
+    return;
+  }
+  if (script_.hit(FaultKind::stuck, t_s) == nullptr) stuck_at_ = state.pose;
+  state.pose = stuck_at_;
+  if (script_.hit(FaultKind::nan, t_s) != nullptr) state.pose.position_m.x = std::nan("");
+  const double ahead_ns = 1e9 * script_.clock_error_s(t_s);
+  state.time_ns += static_cast<std::uint64_t>(std::llround(ahead_ns));
+  const bool refused = script_.hit(FaultKind::truncate, t_s) != nullptr ||
+                       script_.hit(FaultKind::corrupt, t_s) != nullptr;
+  if (!refused) line_.push(state, t_s, now_ns, script_);
+  while (const auto arrived = line_.pop(now_ns)) states_.write(*arrived);
+}
+
+double MockDevice::seconds(std::uint64_t time_ns) const noexcept {
+  return 1e-9 * static_cast<double>(time_ns - zero_ns_);
 }
 
 Wrench MockDevice::wrench_in_force(std::uint64_t time_ns) noexcept {
@@ -114,7 +150,7 @@ Wrench MockDevice::wrench_in_force(std::uint64_t time_ns) noexcept {
     faults_.fetch_or(kDeviceBadCommand, std::memory_order_relaxed);
     return {};
   }
-  if (time_ns >= command_.expires_ns) return {};
+  if (time_ns >= command_.expires_ns || unplugged_) return {};
   return {limited(wrench.force_N, options_.max_force_N),
           limited(wrench.torque_Nm, options_.max_torque_Nm)};
 }

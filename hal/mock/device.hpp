@@ -6,10 +6,12 @@
 #include <atomic>
 #include <cstdint>
 #include <thread>
+#include <vector>
 
 #include "hal/clock.hpp"
 #include "hal/device.hpp"
 #include "hal/exchange.hpp"
+#include "hal/mock/faults.hpp"
 #include "hal/mock/hand.hpp"
 
 namespace palpate::hal::mock {
@@ -25,6 +27,10 @@ struct Options {
   int fifo_priority = 0;       ///< of the thread, 1 to 98; 0 or not permitted: an ordinary thread
   double max_force_N = 20.0;   ///< what it renders at most
   double max_torque_Nm = 1.0;  ///< what it renders at most
+  /// What goes wrong, from the hand's time zero. A reading has no bytes here: one that is truncated
+  /// or corrupted is one that a packet check has refused. While unplugged nothing is rendered.
+  std::vector<FaultWindow> faults;
+  std::uint64_t fault_seed = 1;
 };
 
 class MockDevice final : public Device {
@@ -51,6 +57,8 @@ class MockDevice final : public Device {
   void begin_at(std::uint64_t time_ns) noexcept;
   void period(std::uint64_t time_ns) noexcept;
   void publish(std::uint64_t time_ns) noexcept;
+  void publish_faulty(DeviceState state) noexcept;
+  [[nodiscard]] double seconds(std::uint64_t time_ns) const noexcept;
   [[nodiscard]] Wrench wrench_in_force(std::uint64_t time_ns) noexcept;
 
   Options options_;
@@ -58,7 +66,12 @@ class MockDevice final : public Device {
   std::uint64_t period_ns_ = 0;
   std::optional<Hand> hand_;
   std::uint64_t next_ns_ = 0;  ///< when the next period begins; 0 before the first
+  std::uint64_t zero_ns_ = 0;  ///< time zero of the hand
   std::uint64_t sequence_ = 0;
+  Faults script_;
+  FaultyLine<DeviceState> line_;
+  bool unplugged_ = false;
+  Pose stuck_at_;
   DeviceCommand command_;  ///< the last one taken
   Mailbox<DeviceState> states_;
   Mailbox<DeviceCommand> commands_;

@@ -40,7 +40,7 @@ void DeviceEnd::begin_session() noexcept {
   end_session();
   in_session_ = true;
   faulted_ = (health_ & kFaultHealth) != 0;
-  readings_ = answered_ = refused_ = 0;
+  answered_ = refused_ = 0;
 }
 
 void DeviceEnd::end_session() noexcept {

@@ -21,7 +21,8 @@ class DeviceEnd {
  public:
   explicit DeviceEnd(const Capabilities& capabilities) noexcept : capabilities_(capabilities) {}
 
-  /// The host's session request. Counters start anew; no force until a command enables it.
+  /// The host's session request. Commands are counted anew; no force until one enables it. Readings
+  /// count on: one of before may still be under way.
   void begin_session() noexcept;
 
   /// The host's session request, or the bus was reset, suspended or unplugged. No force.

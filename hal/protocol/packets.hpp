@@ -73,7 +73,7 @@ enum Health : std::uint16_t {
 /// counts and the pose is not sent; else the other way round.
 struct State {
   bool is_joint_state = false;
-  std::uint32_t sequence = 0;        ///< counts readings of a session from 1, wraps past 0
+  std::uint32_t sequence = 0;        ///< counts readings since power-up from 1, wraps past 0
   std::uint64_t device_time_ns = 0;  ///< when the reading was taken, on the device's clock
   std::array<std::int32_t, 3> position_nm{};
   /// w x y z, in 1 / kUnitQuaternion; length within 1/1024 of 1
@@ -162,8 +162,8 @@ inline constexpr std::uint8_t kInterfaceClass = 0xff;
 inline constexpr std::uint8_t kInterfaceSubclass = 0x50;
 inline constexpr std::uint8_t kInterfaceProtocol = 0x41;
 /// bRequest, to the interface. read: type IN, wValue = packet type << 8 | index, 64 bytes.
-/// session: type OUT, wValue 1 begins, 0 ends, no data.
-enum class Request : std::uint8_t { read = 0x01, session = 0x02 };
+/// session: type OUT, wValue 1 begins, 0 ends, no data. restart: type OUT, no data.
+enum class Request : std::uint8_t { read = 0x01, session = 0x02, restart = 0x03 };
 inline constexpr std::uint8_t kVendorIn = 0xc1;   ///< bmRequestType: vendor, interface
 inline constexpr std::uint8_t kVendorOut = 0x41;  ///< bmRequestType: vendor, interface
 

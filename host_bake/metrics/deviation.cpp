@@ -13,7 +13,7 @@
 namespace palpate::bake {
 namespace {
 
-constexpr std::size_t kMaxCorners = 8;
+constexpr std::size_t kMaxCorners = 7;
 
 // Nearest points and cuts are off by a few roundings (2e-16) each; a cell's corners by those of all
 // cuts before it.
@@ -22,16 +22,22 @@ constexpr double kAllRoundings = 1e-12;
 // How far both halves reach from the cut, as a share of the cell's size: no endless slivers.
 constexpr double kLeastCut = 0.05;
 
-// A convex part of a level's triangle.
+// A convex part of a level's triangle, and the original triangle that bounds its distance.
 struct Cell {
   std::array<Vec3d, kMaxCorners> corners;
-  std::uint32_t count = 0;     // of corners
-  std::uint32_t nearest = 0;   // original triangle that bounds the distance
-  std::uint32_t farthest = 0;  // the corner that is farthest from it
+  std::array<double, kMaxCorners> squared;  // distances of the corners to `nearest`
+  std::uint32_t count = 0;                  // of corners
+  std::uint32_t nearest = 0;
+  std::uint32_t farthest = 0;  // corner with the largest distance
   bool centre_known = false;   // the triangle nearest to the centre has been tried
-  double squared_bound = std::numeric_limits<double>::infinity();
 
-  void add(Vec3d corner) { corners[count++] = corner; }
+  void add(Vec3d corner, double squared_distance) {
+    corners[count] = corner;
+    squared[count] = squared_distance;
+    if (squared_distance > squared[farthest]) farthest = count;
+    ++count;
+  }
+  [[nodiscard]] double squared_bound() const { return squared[farthest]; }
   [[nodiscard]] Vec3d farthest_corner() const { return corners[farthest]; }
   [[nodiscard]] Vec3d centre() const {
     Vec3d sum;
@@ -49,7 +55,8 @@ struct Halves {
 };
 
 // Nothing where a half would reach less than `least` from the plane, or have too many corners.
-std::optional<Halves> cut(const Cell& cell, const Plane& plane, double least) {
+std::optional<Halves> cut(const Cell& cell, const Plane& plane, double least,
+                          const NearestSurface& original) {
   std::array<double, kMaxCorners> height{};
   double highest = 0, lowest = 0;
   for (std::size_t i = 0; i < cell.count; ++i) {
@@ -58,27 +65,34 @@ std::optional<Halves> cut(const Cell& cell, const Plane& plane, double least) {
     lowest = std::min(lowest, height[i]);
   }
   if (!(highest > least && lowest < -least)) return std::nullopt;
-  Halves halves;
+  std::optional<Halves> result(std::in_place);
+  Cell &outer = result->outer, &inner = result->inner;
+  outer.nearest = inner.nearest = cell.nearest;
   for (std::size_t i = 0, j = cell.count - 1; i < cell.count; j = i++) {
-    if (std::max(halves.outer.count, halves.inner.count) + 2 > kMaxCorners) return std::nullopt;
+    if (std::max(outer.count, inner.count) + 2 > kMaxCorners) return std::nullopt;
     if ((height[j] < 0 && height[i] > 0) || (height[j] > 0 && height[i] < 0)) {
       const double share = height[j] / (height[j] - height[i]);
       const Vec3d crossing = cell.corners[j] + share * (cell.corners[i] - cell.corners[j]);
-      halves.outer.add(crossing);
-      halves.inner.add(crossing);
+      const double squared = original.squared_distance(crossing, cell.nearest);
+      outer.add(crossing, squared);
+      inner.add(crossing, squared);
     }
-    if (height[i] >= 0) halves.outer.add(cell.corners[i]);
-    if (height[i] <= 0) halves.inner.add(cell.corners[i]);
+    if (height[i] >= 0) outer.add(cell.corners[i], cell.squared[i]);
+    if (height[i] <= 0) inner.add(cell.corners[i], cell.squared[i]);
   }
-  return halves;
+  return result;
 }
 
 // Along the chord between two corners, which always can be done.
 Halves cut_across(const Cell& cell) {
   Halves halves;
+  halves.outer.nearest = halves.inner.nearest = cell.nearest;
   const std::size_t middle = cell.count / 2;
-  for (std::size_t i = 0; i <= middle; ++i) halves.outer.add(cell.corners[i]);
-  for (std::size_t i = middle; i <= cell.count; ++i) halves.inner.add(cell.corners[i % cell.count]);
+  for (std::size_t i = 0; i <= middle; ++i) halves.outer.add(cell.corners[i], cell.squared[i]);
+  for (std::size_t i = middle; i <= cell.count; ++i) {
+    const std::size_t corner = i % cell.count;
+    halves.inner.add(cell.corners[corner], cell.squared[corner]);
+  }
   return halves;
 }
 
@@ -101,121 +115,135 @@ Side side_towards(const std::array<Vec3d, 3>& triangle, Vec3d p) {
   return farthest;
 }
 
-// Branch and bound over the triangles of one patch.
+// Branch and bound over the triangles of one patch, one after the other.
 class PatchSearch {
  public:
   explicit PatchSearch(const NearestSurface& original) : original_(original) {}
 
   void add_triangle(const std::array<Vec3d, 3>& corners, const std::array<Nearest, 3>& nearest) {
     Cell cell;
+    cell.nearest = nearest[0].triangle;
     for (std::size_t i = 0; i < 3; ++i) {
-      cell.add(corners[i]);
+      cell.add(corners[i], original_.squared_distance(corners[i], cell.nearest));
       squared_lower_ = std::max(squared_lower_, nearest[i].squared_distance);
     }
-    for (const Nearest& n : nearest) bound_by(n.triangle, cell);
-    cuts_left_ += kMaxCutsPerFace;
-    put(cell);
+    bound_by(nearest[1].triangle, cell);
+    bound_by(nearest[2].triangle, cell);
+    triangles_.push_back(cell);
   }
 
   // Of the distance, squared: bound from above.
   double run() {
-    while (!queue_.empty()) {
-      std::pop_heap(queue_.begin(), queue_.end(), less);
-      Cell cell = queue_.back();
-      queue_.pop_back();
-      if (good(cell) || cuts_left_ == 0) return std::max(settled_, cell.squared_bound);
-      const Side side = side_towards(original_.corners(cell.nearest), cell.farthest_corner());
-      const double size = norm(cell.farthest_corner() - cell.centre());
-      if (divide_at(side, size, cell)) continue;
-      const std::uint32_t before = cell.nearest;
-      const std::uint32_t other = try_nearest_to(cell.farthest_corner(), cell);
-      if (cell.nearest != before) {
-        put(cell);
-      } else {
-        divide(cell, size, other);
-      }
-    }
+    // What is far comes first: its lower bounds settle most of the others at once.
+    std::sort(triangles_.begin(), triangles_.end(),
+              [](const Cell& a, const Cell& b) { return a.squared_bound() > b.squared_bound(); });
+    for (const Cell& triangle : triangles_) settle(triangle);
     return settled_;
   }
 
  private:
-  static bool less(const Cell& a, const Cell& b) { return a.squared_bound < b.squared_bound; }
-
   [[nodiscard]] bool good(const Cell& cell) const {
     constexpr double kFactor = (1 + kDeviationExcess) * (1 + kDeviationExcess);
-    return cell.squared_bound <=
+    return cell.squared_bound() <=
            std::max(kFactor * squared_lower_, kDeviationTolerance * kDeviationTolerance);
   }
 
-  // The lower bound only grows: what is good now need not be queued.
+  void settle(const Cell& triangle) {
+    put(triangle);
+    for (std::size_t cuts = 0; !open_.empty();) {
+      Cell cell = open_.back();
+      open_.pop_back();
+      if (good(cell) || cuts == kMaxCuts) {
+        settled_ = std::max(settled_, cell.squared_bound());
+      } else if (refine(cell)) {
+        ++cuts;
+      }
+    }
+  }
+
+  // The lower bound only grows: what is good now stays so.
   void put(const Cell& cell) {
     if (good(cell)) {
-      settled_ = std::max(settled_, cell.squared_bound);
-      return;
+      settled_ = std::max(settled_, cell.squared_bound());
+    } else {
+      open_.push_back(cell);
     }
-    queue_.push_back(cell);
-    std::push_heap(queue_.begin(), queue_.end(), less);
   }
 
-  void bound_by(std::uint32_t triangle, Cell& cell) const {
-    double largest = 0;
+  // Whether that makes the bound smaller.
+  bool bound_by(std::uint32_t triangle, Cell& cell) const {
+    if (triangle == cell.nearest) return false;
+    std::array<double, kMaxCorners> squared{};
     std::uint32_t farthest = 0;
-    for (std::uint32_t i = 0; i < cell.count && largest < cell.squared_bound; ++i) {
-      const double squared = original_.squared_distance(cell.corners[i], triangle);
-      if (squared <= largest) continue;
-      largest = squared;
-      farthest = i;
+    for (std::uint32_t i = 0; i < cell.count; ++i) {
+      squared[i] = original_.squared_distance(cell.corners[i], triangle);
+      if (squared[i] >= cell.squared_bound()) return false;
+      if (squared[i] > squared[farthest]) farthest = i;
     }
-    if (largest >= cell.squared_bound) return;
-    cell.squared_bound = largest;
+    cell.squared = squared;
     cell.nearest = triangle;
     cell.farthest = farthest;
-  }
-
-  std::uint32_t try_nearest_to(Vec3d p, Cell& cell) {
-    const Nearest found = original_.nearest(p, cell.nearest);
-    squared_lower_ = std::max(squared_lower_, found.squared_distance);
-    bound_by(found.triangle, cell);
-    return found.triangle;
-  }
-
-  // Where a corner is beyond a side of the triangle, the neighbour there is nearer to it.
-  bool divide_at(const Side& side, double size, Cell& cell) {
-    if (side.outside < kLeastCut * size) return false;
-    if (!cell.centre_known && side.outside > size / 2) {
-      cell.centre_known = true;
-      try_nearest_to(cell.centre(), cell);
-      put(cell);
-      return true;
-    }
-    const std::optional<Halves> halves = cut(cell, side.plane, kLeastCut * size);
-    if (!halves) return false;
-    const std::uint32_t other = original_.neighbour(cell.nearest, side.number);
-    put(*halves, cell.nearest, other == kNoTriangle ? cell.nearest : other);
     return true;
   }
 
-  void divide(const Cell& cell, double size, std::uint32_t other) {
-    const Vec3d centre = cell.centre();
-    const Plane across{unit(cell.farthest_corner() - centre), centre};
-    const std::optional<Halves> halves = cut(cell, across, kLeastCut * size);
-    put(halves ? *halves : cut_across(cell), cell.nearest, other);
+  std::uint32_t nearest_to(Vec3d p, const Cell& cell) {
+    const Nearest found = original_.nearest(p, cell.nearest);
+    squared_lower_ = std::max(squared_lower_, found.squared_distance);
+    return found.triangle;
   }
 
-  void put(Halves halves, std::uint32_t one, std::uint32_t other) {
-    --cuts_left_;
-    for (Cell* half : {&halves.inner, &halves.outer}) {
-      bound_by(one, *half);
-      bound_by(other, *half);
-      put(*half);
+  // Finds a better triangle for the cell or cuts it; true where it does that.
+  bool refine(Cell& cell) {
+    const double size = norm(cell.farthest_corner() - cell.centre());
+    const Side side = side_towards(original_.corners(cell.nearest), cell.farthest_corner());
+    if (side.outside > 0.3 * size && !cell.centre_known) {
+      cell.centre_known = true;
+      bound_by(nearest_to(cell.centre(), cell), cell);
+      put(cell);
+      return false;
     }
+    if (side.outside > kLeastCut * size && cut_at(side, size, cell)) return true;
+    const std::uint32_t other = nearest_to(cell.farthest_corner(), cell);
+    if (good(cell) || bound_by(other, cell)) {
+      put(cell);
+      return false;
+    }
+    cut_in_two(cell, size, other);
+    return true;
+  }
+
+  // Beyond a side of the triangle, its neighbour there is nearer.
+  bool cut_at(const Side& side, double size, const Cell& cell) {
+    std::optional<Halves> halves = cut(cell, side.plane, kLeastCut * size, original_);
+    if (!halves) return false;
+    const std::uint32_t neighbour = original_.neighbour(cell.nearest, side.number);
+    if (neighbour != kNoTriangle) bound_by(neighbour, halves->outer);
+    put(*halves);
+    return true;
+  }
+
+  void cut_in_two(const Cell& cell, double size, std::uint32_t other) {
+    const Vec3d centre = cell.centre();
+    const Plane across{unit(cell.farthest_corner() - centre), centre};
+    std::optional<Halves> halves = cut(cell, across, kLeastCut * size, original_);
+    if (!halves) halves = cut_across(cell);
+    bound_by(other, halves->inner);
+    bound_by(other, halves->outer);
+    put(*halves);
+  }
+
+  // The larger bound is looked at first.
+  void put(const Halves& halves) {
+    const bool outer_first = halves.outer.squared_bound() > halves.inner.squared_bound();
+    put(outer_first ? halves.inner : halves.outer);
+    put(outer_first ? halves.outer : halves.inner);
   }
 
   const NearestSurface& original_;
-  std::vector<Cell> queue_;   // a heap, the largest bound first
+  std::vector<Cell> triangles_;
+  std::vector<Cell> open_;    // a stack, parts of one triangle
   double squared_lower_ = 0;  // some point of the patch is as far as this
   double settled_ = 0;        // largest squared bound of cells that are good
-  std::size_t cuts_left_ = 0;
 };
 
 float rounded_up(double squared) {

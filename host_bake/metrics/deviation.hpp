@@ -14,8 +14,8 @@ namespace palpate::bake {
 inline constexpr double kDeviationExcess = 0.1;
 /// ... or is at most this, for radius 1: what a dozen roundings of coordinates amount to.
 inline constexpr double kDeviationTolerance = 1e-6;
-/// ... unless a patch has been cut more often than this, for each of its faces.
-inline constexpr std::size_t kMaxCutsPerFace = 512;
+/// ... unless a triangle has been cut more often than this.
+inline constexpr std::size_t kMaxCuts = 4096;
 
 /// Surface deviation s of every patch, for radius 1: no point of the patch's triangles is farther
 /// than s from the original surface. The paper does not say how it measures s; this is the directed

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include "host_bake/mesh/topology.hpp"
+#include "host_bake/simplify/surface.hpp"
 
 namespace palpate::bake {
 namespace {
@@ -142,16 +142,11 @@ struct NearestSurface::Builder {
 
   void join_neighbours() {
     out.neighbours_.assign(mesh.faces.size(), {kNoTriangle, kNoTriangle, kNoTriangle});
-    const std::vector<Side> sides = sorted_sides(mesh.faces);
-    for_each_edge(sides, [&](std::span<const Side> edge) {
-      if (edge.size() != 2) return;
-      for (std::size_t i = 0; i < 2; ++i) {
-        const Side& side = edge[i];
-        const std::uint32_t corner =
-            corner_of(mesh.faces[side.face], side.forward ? side.low : side.high);
-        out.neighbours_[triangle_of_face[side.face]][corner] = triangle_of_face[edge[1 - i].face];
-      }
-    });
+    const std::vector<std::uint32_t> twin = Surface(mesh).twin;
+    for (std::size_t h = 0; h < twin.size(); ++h) {
+      if (twin[h] != kNothing)
+        out.neighbours_[triangle_of_face[h / 3]][h % 3] = triangle_of_face[twin[h] / 3];
+    }
   }
 };
 

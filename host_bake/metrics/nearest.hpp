@@ -50,7 +50,7 @@ class NearestSurface {
   }
 
   /// The triangle on the other side of the edge from corner `side` to the next; kNoTriangle where
-  /// the edge does not have exactly two.
+  /// the edge does not have exactly two, oppositely oriented.
   [[nodiscard]] std::uint32_t neighbour(std::uint32_t triangle, std::size_t side) const {
     return neighbours_[triangle][side];
   }

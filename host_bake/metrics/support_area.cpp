@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "host_bake/metrics/support_area_grown.hpp"
 #include "host_bake/metrics/vector.hpp"
 #include "rt_core/image/format.hpp"
 
@@ -19,22 +20,37 @@ std::array<Vec3d, 3> corners(const NormalMesh& mesh, const Face& face) {
 
 double angle_between(Vec3d a, Vec3d b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 
-// Share of the triangle (o, b, c) with heights 0, hb, hc over the plane through o that lies at
-// heights up to `limit`.
-double share_below(double hb, double hc, double limit) {
-  if (hb > hc) std::swap(hb, hc);
-  if (hc <= limit) return 1;
-  // With one corner above the limit, what is cut off is a triangle at that corner; with two, what
-  // stays is one at o.
-  if (hb >= limit) return hb > 0 ? limit / hb * (limit / hc) : 0;
-  const double from_o = (hc - limit) / hc;
-  const double from_b = (hc - limit) / (hc - hb);
-  return 1 - from_o * from_b;
+std::vector<double> one_ring_areas(const NormalMesh& mesh, const std::vector<Vec3d>& normals,
+                                   double delta_rel) {
+  std::vector<double> areas(mesh.points.size(), 0.0);
+  for (const Face& face : mesh.faces) {
+    const auto p = corners(mesh, face);
+    const Vec3d area_vector = 0.5 * cross(p[1] - p[0], p[2] - p[0]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3d n = normals[face[i]];
+      const double projected = dot(area_vector, n);
+      if (projected <= 0) continue;
+      const std::array<double, 3> heights{0, dot(p[(i + 1) % 3] - p[i], n),
+                                          dot(p[(i + 2) % 3] - p[i], n)};
+      areas[face[i]] += projected * share_within(heights, delta_rel);
+    }
+  }
+  return areas;
 }
 
-// Share of the triangle within `limit` of the plane through o on both sides.
-double share_within(double hb, double hc, double limit) {
-  return share_below(hb, hc, limit) + share_below(-hb, -hc, limit) - 1;
+// Floor of D: kLeastSupportShare of the mean area around a vertex.
+double least_area(const NormalMesh& mesh) {
+  std::vector<char> used(mesh.points.size(), 0);
+  double incident_area = 0;
+  for (const Face& face : mesh.faces) {
+    const auto p = corners(mesh, face);
+    incident_area += 1.5 * norm(cross(p[1] - p[0], p[2] - p[0]));
+    for (const std::uint32_t v : face) used[v] = 1;
+  }
+  const auto vertices = std::count(used.begin(), used.end(), 1);
+  return std::max(
+      kLeastSupportShare * incident_area / static_cast<double>(std::max<long>(vertices, 1)),
+      static_cast<double>(image::kMinArea));
 }
 
 }  // namespace
@@ -53,27 +69,11 @@ std::vector<Vec3d> vertex_normals(const NormalMesh& mesh) {
 }
 
 std::vector<float> support_areas(const NormalMesh& mesh, const std::vector<Vec3d>& normals,
-                                 double delta_rel) {
-  std::vector<double> areas(mesh.points.size(), 0.0);
-  std::vector<char> used(mesh.points.size(), 0);
-  double incident_area = 0;
-  for (const Face& face : mesh.faces) {
-    const auto p = corners(mesh, face);
-    const Vec3d area_vector = 0.5 * cross(p[1] - p[0], p[2] - p[0]);
-    incident_area += 3 * norm(area_vector);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3d n = normals[face[i]];
-      const double projected = dot(area_vector, n);
-      used[face[i]] = 1;
-      if (projected <= 0) continue;
-      const double hb = dot(p[(i + 1) % 3] - p[i], n), hc = dot(p[(i + 2) % 3] - p[i], n);
-      areas[face[i]] += projected * share_within(hb, hc, delta_rel);
-    }
-  }
-  const auto vertices = std::count(used.begin(), used.end(), 1);
-  const double floor = std::max(
-      kLeastSupportShare * incident_area / static_cast<double>(std::max<long>(vertices, 1)),
-      static_cast<double>(image::kMinArea));
+                                 double delta_rel, SupportReading reading) {
+  std::vector<double> areas = reading == SupportReading::one_ring
+                                  ? one_ring_areas(mesh, normals, delta_rel)
+                                  : grown_areas(mesh, normals, delta_rel);
+  const double floor = least_area(mesh);
   std::vector<float> out(areas.size());
   std::transform(areas.begin(), areas.end(), out.begin(),
                  [&](double area) { return static_cast<float>(std::max(area, floor)); });

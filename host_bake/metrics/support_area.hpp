@@ -17,19 +17,31 @@ std::vector<Vec3d> vertex_normals(const NormalMesh& mesh);
 /// Least share of the mean area of faces around a vertex that a support area can have.
 inline constexpr double kLeastSupportShare = 0.01;
 
+/// Which faces Sec. 4.5 means by "nearby".
+enum class SupportReading {
+  one_ring,  ///< the vertex's faces
+  grown,     ///< and all that are reached from them over edges within delta and the normal cone
+};
+
 /// Support area D of every vertex, for radius 1: the area, projected onto the vertex's tangent
-/// plane, of the parts of its incident faces that lie within delta of the vertex along its normal
-/// N.
+/// plane, of the parts of nearby faces that lie within delta of the vertex along its normal N and
+/// whose normals lie in its normal cone.
 ///
-/// This is the strict reading of Sec. 4.5 (incident faces only). Two choices where the paper is
-/// silent: the normal cone is the open half space about N (a face turned by 90 degrees or more from
-/// N does not support along N; up to there the projection fades it out by itself), and a face is
-/// cut off at delta instead of left out, so that D depends on delta continuously. D is at least
-/// kLeastSupportShare of the mean over all vertices of their faces' unprojected area: sharp tips
-/// would have zero, and D divides in eq. 7.
+/// Three choices where the paper is silent. The normal cone is the open half space about N (a face
+/// turned by 90 degrees or more from N does not support along N; up to there the projection fades
+/// it out by itself). A face is cut off at delta instead of left out, so that D depends on delta
+/// continuously. `grown` crosses an edge when some point of it is within delta and the face behind
+/// it is in the cone. D is at least kLeastSupportShare of the mean over all vertices of their
+/// faces' unprojected area: sharp tips would have zero, and D divides in eq. 7.
+///
+/// one_ring depends on the tessellation (it shrinks with the triangles), grown on delta alone where
+/// the surface is smooth: about 2 pi delta on a sphere.
 /// @param delta_rel  relative to the radius, > 0
+/// Cost: one_ring O(n); grown O(n * faces within delta), about 10 ns each, parallel and the same
+/// whatever the number of threads.
 std::vector<float> support_areas(const NormalMesh& mesh, const std::vector<Vec3d>& normals,
-                                 double delta_rel);
+                                 double delta_rel,
+                                 SupportReading reading = SupportReading::one_ring);
 
 /// Largest resolution of an edge (eq. 1), for radius 1: the inverse of the least projected edge
 /// length. Nothing has been collapsed on level 0, so N is the mean of the end points' normals

@@ -232,6 +232,21 @@ class ImageWriter {
   std::vector<std::byte> bytes_;
 };
 
+// Each triangle with the piece of level 0 whose patch holds it.
+std::vector<image::RegionTriangle> linked_to_pieces(std::vector<image::RegionTriangle> triangles,
+                                                    const Content& content) {
+  std::vector<std::uint32_t> piece_of(triangles.size(), image::kNone);
+  for (std::uint32_t i = 0; i < content.pieces.size(); ++i) {
+    const image::Piece& piece = content.pieces[i];
+    if (piece.level != 0 || triangles.empty()) continue;
+    for (std::uint32_t t = 0; t < piece.triangles; ++t) {
+      piece_of.at(content.triangles[piece.first_triangle + t].source) = i;
+    }
+  }
+  for (image::RegionTriangle& t : triangles) t.piece = piece_of.at(t.source);
+  return triangles;
+}
+
 image::Header header_of(const Content& content, const image::Header& facts) {
   image::Header header = facts;
   std::copy(std::begin(image::kMagic), std::end(image::kMagic), header.magic);
@@ -246,7 +261,7 @@ image::Header header_of(const Content& content, const image::Header& facts) {
 }  // namespace
 
 std::vector<std::byte> pack(const Hierarchy& tree, const Metrics& metrics,
-                            const image::Header& facts) {
+                            const image::Header& facts, const RegionTree& regions) {
   refuse_above(tree.pieces.size(), image::kMaxPieces, "pieces");
   refuse_above(tree.levels.size(), image::kMaxLevels, "levels");
   const std::vector<std::uint32_t> order = image_order(tree);
@@ -266,6 +281,9 @@ std::vector<std::byte> pack(const Hierarchy& tree, const Metrics& metrics,
   image.add(image::SectionId::triangles, content.triangles);
   image.add(image::SectionId::virtual_faces, content.virtual_faces);
   image.add(image::SectionId::culling_vertices, content.culling_vertices);
+  image.add(image::SectionId::region_nodes, regions.nodes);
+  image.add(image::SectionId::region_triangles, linked_to_pieces(regions.triangles, content));
+  image.add(image::SectionId::regions, regions.regions);
   return std::move(image).finish();
 }
 

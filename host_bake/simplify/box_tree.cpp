@@ -2,11 +2,11 @@
 #include "host_bake/simplify/box_tree.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace palpate::bake {
 
-BoxTree::BoxTree(std::size_t boxes)
-    : boxes_(boxes), next_(boxes, kEnd), previous_(boxes, kEnd), cell_of_(boxes, kEnd), cells_(1) {}
+BoxTree::BoxTree(std::size_t boxes) : places_(boxes), cells_(1) {}
 
 /// Makes the cells on the way down.
 std::uint32_t BoxTree::cell_for(const FaceBox& box) {
@@ -28,39 +28,50 @@ std::uint32_t BoxTree::cell_for(const FaceBox& box) {
       octant |= std::size_t{high} << i;
       child.centre[i] = cells_[at].centre[i] + (high ? child.half : -child.half);
     }
+    child.octant = static_cast<std::uint32_t>(octant);
     if (cells_[at].children[octant] == kEnd) {
       cells_[at].children[octant] = static_cast<std::uint32_t>(cells_.size());
-      cells_.push_back(child);
+      cells_.push_back(std::move(child));
     }
     at = cells_[at].children[octant];
   }
   return at;
 }
 
-void BoxTree::take(std::uint32_t id) {
-  const std::uint32_t cell = cell_of_[id];
-  if (cell == kEnd) return;
-  if (previous_[id] != kEnd) {
-    next_[previous_[id]] = next_[id];
-  } else {
-    cells_[cell].first = next_[id];
+/// Boxes have come to a cell, or gone from it.
+void BoxTree::count(std::uint32_t cell, std::uint32_t by) {
+  for (std::uint32_t c = cell; c != kEnd; c = cells_[c].parent) {
+    cells_[c].below += by;
+    if (cells_[c].parent == kEnd) continue;
+    std::uint32_t& full = cells_[cells_[c].parent].full;
+    const std::uint32_t bit = 1u << cells_[c].octant;
+    full = cells_[c].below > 0 ? full | bit : full & ~bit;
   }
-  if (next_[id] != kEnd) previous_[next_[id]] = previous_[id];
-  for (std::uint32_t c = cell; c != kEnd; c = cells_[c].parent) --cells_[c].below;
-  cell_of_[id] = kEnd;
+}
+
+void BoxTree::take(std::uint32_t id) {
+  Place& place = places_[id];
+  if (place.cell == kEnd) return;
+  std::vector<Entry>& entries = cells_[place.cell].entries;
+  places_[entries.back().id].slot = place.slot;
+  entries[place.slot] = entries.back();
+  entries.pop_back();
+  count(place.cell, ~0u);
+  place.cell = kEnd;
 }
 
 void BoxTree::put(std::uint32_t id, const FaceBox& box) {
   const std::uint32_t cell = cell_for(box);
-  boxes_[id] = box;
-  if (cell_of_[id] == cell) return;
+  Place& place = places_[id];
+  std::vector<Entry>& entries = cells_[cell].entries;
+  if (place.cell == cell) {
+    entries[place.slot].box = box;
+    return;
+  }
   take(id);
-  next_[id] = cells_[cell].first;
-  previous_[id] = kEnd;
-  if (next_[id] != kEnd) previous_[next_[id]] = id;
-  cells_[cell].first = id;
-  for (std::uint32_t c = cell; c != kEnd; c = cells_[c].parent) ++cells_[c].below;
-  cell_of_[id] = cell;
+  place = {cell, static_cast<std::uint32_t>(entries.size())};
+  entries.push_back({box, id});
+  count(cell, 1);
 }
 
 }  // namespace palpate::bake

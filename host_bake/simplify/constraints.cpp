@@ -17,6 +17,9 @@ using Corners = std::array<PointF, 3>;
 // Faces from which on a collapse inside a patch is judged by the virtual facets alone.
 constexpr std::size_t kLargePatch = 48;
 
+// Of a patch that is not much larger than a ring.
+constexpr std::size_t kFewPoints = 24;
+
 int side(const Corners& plane, const PointF& p) {
   if (p == plane[0] || p == plane[1] || p == plane[2]) return 0;
   return orient_3d(plane[0], plane[1], plane[2], p);
@@ -71,6 +74,7 @@ Constraints::Constraints(const Surface& surface, const PatchLists& patches)
       gatherer_(surface),
       faces_(surface.faces.size()),
       boxes_(patches.count()),
+      near_faces_(faces_),
       hulls_(patches.count()),
       kinds_(patches.count(), HullKind::unknown),
       facets_(patches.count()) {
@@ -132,6 +136,19 @@ void Constraints::begin(const Ring& ring) {
     gatherer_.gather(patches_, one, &ring, a.shape);
     a.planes.set(a.shape);
   }
+  near_faces_.move_to(place_of_hulls());
+}
+
+/// Where most of the searches for a collapse will be: about its ring and the patches there.
+FaceBox Constraints::place_of_hulls() const {
+  FaceBox place = palpate::bake::box_of({});
+  for (const std::uint32_t v : ring_->vertices) place.add(surface_.points[v]);
+  for (std::size_t i = 0; i < affected_count_; ++i) {
+    const Affected& a = affected_[i];
+    if (a.closed || a.shape.points.size() > kFewPoints) continue;
+    for (const PointF& p : a.shape.points) place.add(p);
+  }
+  return place;
 }
 
 Refusal Constraints::judge(const PointF& position) {
@@ -201,8 +218,8 @@ bool Constraints::visible(const Affected& affected) const {
 }
 
 bool Constraints::entered_by_unchanged(const Affected& affected, ShrunkHull& hull,
-                                       const FaceBox& box) const {
-  return faces_.search(box, [&](std::uint32_t f) {
+                                       const FaceBox& box) {
+  return near_faces_.search(box, [&](std::uint32_t f) {
     if (patches_.of(f) == affected.shape.patch) return false;
     if (f == ring_->edge / 3 || f == ring_->twin / 3) return false;
     const Face& face = surface_.faces[f];
@@ -317,12 +334,12 @@ bool Constraints::is_entered(std::uint32_t patch, const Corners& face) {
   return hull != nullptr && enters(*hull, face);
 }
 
-bool Constraints::crosses() const {
+bool Constraints::crosses() {
   for (std::size_t i = 1; i < star_.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (star_[i].patch != star_[j].patch && cross_each_other(star_[i].corners, star_[j].corners))
         return true;
-  return faces_.search(star_box_, [&](std::uint32_t f) {
+  return near_faces_.search(star_box_, [&](std::uint32_t f) {
     for (const std::uint32_t v : surface_.faces[f])
       if (v == ring_->kept || v == ring_->removed) return false;
     const FaceBox& box = faces_.box(f);

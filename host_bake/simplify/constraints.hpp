@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host_bake/simplify/box_tree.hpp"
+#include "host_bake/simplify/near_boxes.hpp"
 #include "host_bake/simplify/patch_hulls.hpp"
 #include "host_bake/simplify/patch_lists.hpp"
 #include "host_bake/simplify/patch_shape.hpp"
@@ -81,11 +82,12 @@ class Constraints {
   [[nodiscard]] bool visible(const Affected& affected) const;
   [[nodiscard]] bool hull_is_entered(Affected& affected);
   [[nodiscard]] bool entered_by_unchanged(const Affected& affected, ShrunkHull& hull,
-                                          const FaceBox& box) const;
+                                          const FaceBox& box);
+  [[nodiscard]] FaceBox place_of_hulls() const;
   void set_star();
   [[nodiscard]] bool below_each_other(std::uint32_t a, std::uint32_t b);
   [[nodiscard]] bool enters_others();
-  [[nodiscard]] bool crosses() const;
+  [[nodiscard]] bool crosses();
   [[nodiscard]] bool stays_within(const Affected& affected);
   [[nodiscard]] bool is_entered(std::uint32_t patch, const std::array<PointF, 3>& corners);
   [[nodiscard]] bool grows_locally(const Affected& affected);
@@ -98,6 +100,7 @@ class Constraints {
   ShapeGatherer gatherer_;
   HullBuilder builder_;
   BoxTree faces_, boxes_;
+  NearBoxes near_faces_;
   std::vector<std::unique_ptr<ShrunkHull>> hulls_;      // by patch, where solid
   std::vector<HullKind> kinds_;                         // by patch
   std::vector<std::unique_ptr<VirtualFacets>> facets_;  // by patch, of large ones

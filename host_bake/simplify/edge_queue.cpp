@@ -2,9 +2,16 @@
 #include "host_bake/simplify/edge_queue.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace palpate::bake {
 namespace {
+
+// Sign, exponent and seven bits of the mantissa: 128 buckets an octave.
+constexpr int kDroppedBits = 16;
+constexpr std::size_t kBuckets = std::size_t{1} << (31 - kDroppedBits);
+
+std::size_t bucket_of(float key) { return std::bit_cast<std::uint32_t>(key) >> kDroppedBits; }
 
 bool later(const EdgeQueue::Entry& a, const EdgeQueue::Entry& b) {
   return a.key != b.key ? a.key < b.key : a.half_edge > b.half_edge;
@@ -12,7 +19,8 @@ bool later(const EdgeQueue::Entry& a, const EdgeQueue::Entry& b) {
 
 }  // namespace
 
-EdgeQueue::EdgeQueue(const Surface& surface) : surface_(surface), states_(surface.twin.size()) {}
+EdgeQueue::EdgeQueue(const Surface& surface)
+    : surface_(surface), states_(surface.twin.size()), buckets_(kBuckets) {}
 
 std::uint32_t EdgeQueue::name(std::uint32_t half_edge) const {
   return std::min(half_edge, surface_.twin[half_edge]);
@@ -25,8 +33,10 @@ void EdgeQueue::put(std::uint32_t half_edge, float key) {
   state.key = key;
   state.queued = true;
   state.outdated = false;
-  heap_.push_back({key, h, state.stamp, false});
-  std::push_heap(heap_.begin(), heap_.end(), later);
+  const std::size_t b = bucket_of(key);
+  buckets_[b].push_back({key, h, state.stamp, false});
+  std::push_heap(buckets_[b].begin(), buckets_[b].end(), later);
+  last_ = std::max(last_, b);
 }
 
 void EdgeQueue::forget(std::uint32_t half_edge) {
@@ -43,24 +53,28 @@ void EdgeQueue::touch(std::uint32_t half_edge) {
   state.outdated = true;
 }
 
-void EdgeQueue::clean() {
-  while (!heap_.empty() && states_[heap_.front().half_edge].stamp != heap_.front().stamp) {
-    std::pop_heap(heap_.begin(), heap_.end(), later);
-    heap_.pop_back();
+std::vector<EdgeQueue::Entry>& EdgeQueue::front() {
+  for (;; --last_) {
+    std::vector<Entry>& heap = buckets_[last_];
+    while (!heap.empty() && states_[heap.front().half_edge].stamp != heap.front().stamp) {
+      std::pop_heap(heap.begin(), heap.end(), later);
+      heap.pop_back();
+    }
+    if (!heap.empty() || last_ == 0) return heap;
   }
 }
 
 float EdgeQueue::next_key() {
-  clean();
-  return heap_.empty() ? -1.0F : heap_.front().key;
+  const std::vector<Entry>& heap = front();
+  return heap.empty() ? -1.0F : heap.front().key;
 }
 
 EdgeQueue::Entry EdgeQueue::pop() {
-  clean();
-  if (heap_.empty()) return {};
-  std::pop_heap(heap_.begin(), heap_.end(), later);
-  Entry entry = heap_.back();
-  heap_.pop_back();
+  std::vector<Entry>& heap = front();
+  if (heap.empty()) return {};
+  std::pop_heap(heap.begin(), heap.end(), later);
+  Entry entry = heap.back();
+  heap.pop_back();
   State& state = states_[entry.half_edge];
   entry.outdated = state.outdated;
   state.queued = false;

@@ -2,6 +2,7 @@
 // Edges in the order of resolution, highest first.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -10,7 +11,11 @@
 namespace palpate::bake {
 
 /// Holds each edge at most once, under either of its half-edges. An entry may be outdated: what it
-/// was computed from has changed since, and it is computed anew when it comes up.
+/// was computed from has changed since, and it is computed anew when it comes up. Keys are not
+/// negative.
+///
+/// Keys are sorted into buckets by their leading bits, and within a bucket by a heap that fits the
+/// cache.
 class EdgeQueue {
  public:
   explicit EdgeQueue(const Surface& surface);
@@ -40,11 +45,13 @@ class EdgeQueue {
     bool queued = false, outdated = false;
   };
   [[nodiscard]] std::uint32_t name(std::uint32_t half_edge) const;
-  void clean();
+  /// The bucket whose front is the first edge; the buckets are empty where that is.
+  std::vector<Entry>& front();
 
   const Surface& surface_;
   std::vector<State> states_;  // by half-edge; both of an edge carry the stamp
-  std::vector<Entry> heap_;
+  std::vector<std::vector<Entry>> buckets_;
+  std::size_t last_ = 0;  // no bucket beyond it holds an entry
 };
 
 }  // namespace palpate::bake

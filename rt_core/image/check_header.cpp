@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "rt_core/image/checks.hpp"
+#include "rt_core/image/region_format.hpp"
 
 namespace palpate::image::checks {
 namespace {
@@ -12,8 +13,9 @@ constexpr std::uint32_t kKnownFlags = static_cast<std::uint32_t>(HeaderFlag::rep
 
 // Bytes a record, by slot.
 constexpr std::uint32_t kStrides[] = {
-    sizeof(Level),         sizeof(Piece),    sizeof(Vertex),     sizeof(std::uint32_t),
-    sizeof(std::uint32_t), sizeof(Triangle), sizeof(VirtualFace), sizeof(Vertex)};
+    sizeof(Level),         sizeof(Piece),          sizeof(Vertex),      sizeof(std::uint32_t),
+    sizeof(std::uint32_t), sizeof(Triangle),       sizeof(VirtualFace), sizeof(Vertex),
+    sizeof(RegionNode),    sizeof(RegionTriangle), sizeof(Region)};
 constexpr std::size_t kKnownSections = sizeof(kStrides) / sizeof(kStrides[0]);
 constexpr SectionId kRequired[] = {SectionId::levels, SectionId::pieces, SectionId::vertices,
                                    SectionId::triangles};

@@ -49,4 +49,9 @@ Status check_level_totals(const ImageView& image) noexcept;
 /// The capacities in the header are the true ones. image_bad_header.
 Status check_capacities(const ImageView& image) noexcept;
 
+/// The region engine's sections: all or none; one tree whose boxes hold its triangles; regions and
+/// triangles refer to it and to one another. image_missing_section, image_over_limit,
+/// image_bad_section, image_bad_tree, image_bad_index, image_bad_float.
+Status check_regions(const ImageView& image) noexcept;
+
 }  // namespace palpate::image::checks

@@ -42,11 +42,11 @@ inline constexpr std::uint32_t kMaxCullingVertices = kAdjacencyAbove;
 // Ranges of numbers; lengths and areas for radius 1.
 inline constexpr double kMinRadius_m = 1e-12;
 inline constexpr double kMaxRadius_m = 1e12;
-inline constexpr double kMaxCentre_m = 1e15;     ///< of each |coordinate|
+inline constexpr double kMaxCentre_m = 1e15;  ///< of each |coordinate|
 /// Of a vertex and of a sphere's centre. The original lies in the unit ball (to 1e-5); simplified
 /// vertices may leave it, for they keep the volume.
 inline constexpr float kMaxNorm = 1.5f;
-inline constexpr float kMaxLength = 4.0f;        ///< of a sphere's radius, s, h and delta
+inline constexpr float kMaxLength = 4.0f;  ///< of a sphere's radius, s, h and delta
 /// Of a support area: the least normal float, so that 1 / D is finite.
 inline constexpr float kMinArea = 1.17549435e-38f;
 inline constexpr float kMaxArea = 1e9f;
@@ -72,7 +72,11 @@ enum class SectionId : std::uint32_t {
   virtual_faces = 6,  ///< VirtualFace; hull faces that are not of the mesh
   /// Vertex, with support_area 0; culling hulls of the pieces whose own hull is no tight bound
   culling_vertices = 7,
-  // 8 to 15 are for the region engine and later minor versions; they are empty in version 1.0.
+  // The region engine's (region_format.hpp): all three or none.
+  region_nodes = 8,      ///< RegionNode, breadth first
+  region_triangles = 9,  ///< RegionTriangle; the source mesh in the order of the leaves
+  regions = 10,          ///< Region
+  // 11 to 15 are for later minor versions; they are empty in version 1.0.
 };
 inline constexpr std::size_t kSectionSlots = 16;
 
@@ -135,11 +139,11 @@ static_assert(offsetof(Header, sections) == 216);
 /// One level of detail (Sec. 4.4). A piece belongs to every level from Piece::level up to the one
 /// below its parent's.
 struct Level {
-  std::uint32_t pieces;     ///< pieces that belong to this level; 1 on the last
+  std::uint32_t pieces;  ///< pieces that belong to this level; 1 on the last
   /// Of the level's mesh (source_triangles on the original surface); 0 on free levels.
   std::uint32_t triangles;
-  std::uint32_t free;       ///< 1 where made by hull merging alone (no metric)
-  float resolution;         ///< r, Sec. 4.1, for radius 1; 0 on free levels
+  std::uint32_t free;               ///< 1 where made by hull merging alone (no metric)
+  float resolution;                 ///< r, Sec. 4.1, for radius 1; 0 on free levels
   float max_surface_deviation_rel;  ///< largest s of its pieces
   float max_hausdorff_rel;          ///< largest h of its pieces
   float min_support_area_rel;       ///< smallest D of its pieces

@@ -25,13 +25,13 @@ struct RegionNode {
   float centre[3][kRegionWidth];
   float axes[9][kRegionWidth];  ///< component c of axis k in row 3 k + c
   float half[3][kRegionWidth];  ///< half the box's lengths, >= 0
-  std::uint32_t first;          ///< first child: into region_triangles for a leaf, else region_nodes
-  std::uint32_t children;       ///< 1 to kRegionWidth, contiguous
-  std::uint32_t leaf;           ///< 1: children are triangles
-  std::uint32_t parent;         ///< kNone at the root
-  std::uint32_t region;         ///< the region that it is part of; kNone above the regions
-  std::uint32_t first_region;   ///< the regions below it, contiguous; its own one inside a region
-  std::uint32_t regions;        ///< at least 1
+  std::uint32_t first;         ///< first child: into region_triangles for a leaf, else region_nodes
+  std::uint32_t children;      ///< 1 to kRegionWidth, contiguous
+  std::uint32_t leaf;          ///< 1: children are triangles
+  std::uint32_t parent;        ///< kNone at the root
+  std::uint32_t region;        ///< the region that it is part of; kNone above the regions
+  std::uint32_t first_region;  ///< the regions below it, contiguous; its own one inside a region
+  std::uint32_t regions;       ///< at least 1
   std::uint32_t reserved[9];
 };
 static_assert(sizeof(RegionNode) == 1024);
@@ -51,12 +51,11 @@ static_assert(sizeof(RegionTriangle) == 64);
 /// A connected or nearly connected part of the surface for which the engine keeps one least
 /// distance.
 struct Region {
-  std::uint32_t parent;     ///< node above its root ...
-  std::uint32_t slot;       ///< ... and which child of it the root is
-  std::uint32_t triangles;  ///< of the region, at least 1
-  float reach;              ///< farthest point from the object's centre, rounded up
-  float radius;             ///< half the diagonal of its root's box, rounded up
-  std::uint32_t reserved[3];
+  std::uint32_t parent;  ///< node above its root ...
+  std::uint32_t slot;    ///< ... and which child of it the root is
+  float reach;           ///< farthest point from the object's centre, rounded up
+  float radius;          ///< half the diagonal of its root's box, rounded up
+  std::uint32_t reserved[4];
 };
 static_assert(sizeof(Region) == 32);
 

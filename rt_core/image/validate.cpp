@@ -36,6 +36,9 @@ ImageView view_of(std::span<const std::byte> bytes) noexcept {
   view.triangles = records<image::Triangle>(bytes, Id::triangles);
   view.virtual_faces = records<image::VirtualFace>(bytes, Id::virtual_faces);
   view.culling_vertices = records<image::Vertex>(bytes, Id::culling_vertices);
+  view.region_nodes = records<image::RegionNode>(bytes, Id::region_nodes);
+  view.region_triangles = records<image::RegionTriangle>(bytes, Id::region_triangles);
+  view.regions = records<image::Region>(bytes, Id::regions);
   return view;
 }
 
@@ -78,10 +81,10 @@ Status validate(std::span<const std::byte> bytes, ImageView& out_view) noexcept 
 
   // Each pass may read what the ones before it have proved to be in range, so the order matters.
   constexpr Status (*kPasses[])(const ImageView&) noexcept = {
-      image::checks::check_levels,    image::checks::check_pieces,
-      image::checks::check_tree,      image::checks::check_indices,
-      image::checks::check_vertices,  image::checks::check_level_totals,
-      image::checks::check_capacities};
+      image::checks::check_levels,     image::checks::check_pieces,
+      image::checks::check_tree,       image::checks::check_indices,
+      image::checks::check_vertices,   image::checks::check_level_totals,
+      image::checks::check_capacities, image::checks::check_regions};
   const ImageView view = view_of(bytes);
   for (const auto pass : kPasses) {
     if (const Status s = pass(view); s != Status::ok) return s;

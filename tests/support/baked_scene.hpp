@@ -33,7 +33,9 @@ struct AlignedBytes {
 };
 
 struct BakedBody {
-  explicit BakedBody(bake::Mesh m, const bake::BakeOptions& options = {}) : mesh(std::move(m)) {
+  explicit BakedBody(bake::Mesh m, bake::ForEngine engine = bake::ForEngine::levels)
+      : BakedBody(std::move(m), bake::BakeOptions{.engine = engine}) {}
+  BakedBody(bake::Mesh m, const bake::BakeOptions& options) : mesh(std::move(m)) {
     bake::BakeReport report;
     const std::vector<std::byte> image = bake::bake(mesh, bake::check(mesh), options, {}, report);
     bytes = std::make_unique<AlignedBytes>(image.size());
@@ -50,7 +52,7 @@ struct BakedScene {
              const Limits& limits = {})
       : bodies(std::move(bodies_)),
         pairs(std::move(pairs_)),
-        memory(required_bytes(scene(), limits)) {
+        memory(required_bytes(scene(), limits, settings.engine)) {
     EXPECT_EQ(create(scene(), settings, limits, memory.span(), engine), Status::ok);
   }
   [[nodiscard]] Scene scene() const { return {bodies, pairs, 0}; }

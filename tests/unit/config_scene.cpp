@@ -54,7 +54,7 @@ class ConfigScene : public ::testing::Test {
 
 TEST_F(ConfigScene, OnlyBodies_load_defaults) {
   const Scene s = load(kBodies);
-  EXPECT_EQ(s.engine, EngineKind::levels);
+  EXPECT_EQ(s.settings.engine, EngineKind::levels);
   EXPECT_EQ(s.settings.delta_m, 0.0005);
   EXPECT_EQ(s.settings.s0, 0.025);
   EXPECT_FALSE(s.settings.exact);
@@ -119,7 +119,7 @@ role = "tool"
 a = "b"
 b = "a"
 )");
-  EXPECT_EQ(s.engine, EngineKind::regions);
+  EXPECT_EQ(s.settings.engine, EngineKind::regions);
   EXPECT_EQ(s.settings.delta_m, 0.001);
   EXPECT_EQ(s.settings.s0, 0.05);
   EXPECT_TRUE(s.settings.exact);

@@ -156,8 +156,19 @@ TEST_F(ImageCommands, Emit_writes_each_form) {
   }
 }
 
+TEST_F(ImageCommands, EmitDfu_appends_the_suffix_with_the_identifiers) {
+  ASSERT_EQ(emit({"--as", "dfu", "--vendor-id", "0x1209", "--product-id", "0xabcd"}).status, 0);
+  const std::string file = read_file(path("out")), image = read_file(path("boxes.palp"));
+  ASSERT_EQ(file.size(), image.size() + 16);
+  EXPECT_EQ(file.substr(0, image.size()), image);
+  EXPECT_EQ(file.substr(image.size(), 12),
+            "\xff\xff\xcd\xab\x09\x12" + std::string("\0\x01UFD\x10", 6));
+}
+
 TEST_F(ImageCommands, Emit_of_what_cannot_be_made_is_refused) {
-  expect_refusal(emit({"--as", "dfu"}), 2, "DFU");
+  expect_refusal(emit({"--as", "dfu", "--address", "64"}), 2, "no meaning");
+  expect_refusal(emit({"--as", "hex", "--vendor-id", "0x1209"}), 2, "no meaning");
+  expect_refusal(emit({"--as", "dfu", "--vendor-id", "0x12345"}), 2, "--vendor-id");
   expect_refusal(emit({"--as", "exe"}), 2, "--as");
   expect_refusal(emit({"--as", "c", "--symbol", "3d"}), 2, "C identifier");
   expect_refusal(emit({"--as", "c", "--symbol", "a;b"}), 2, "C identifier");

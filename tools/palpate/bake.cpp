@@ -29,7 +29,7 @@ struct Options {
   std::string mesh;
   std::string image;
   std::string report;  ///< empty: none
-  std::string engine = "levels";
+  std::string engine;  ///< empty: as much as the other options allow
   double unit_scale = 1.0;
   bool repair = false;
   bool strict = false;
@@ -42,6 +42,19 @@ struct Baked {
   std::vector<std::string> repairs;
   bake::BakeReport report;
 };
+
+/// An image with levels left out serves the levels engine only.
+bake::ForEngine engine_of(const Options& options) {
+  if (options.engine == "levels") return bake::ForEngine::levels;
+  const bool reduced = options.bake.s0_min > 0 || options.bake.max_bytes > 0;
+  if (!options.engine.empty() && reduced) {
+    throw Failure(kUsage, "regions need the original surface, so nothing can be left out",
+                  "--engine " + options.engine,
+                  "use --engine levels with --s0-min and --max-bytes");
+  }
+  if (options.engine == "regions") return bake::ForEngine::regions;
+  return reduced ? bake::ForEngine::levels : bake::ForEngine::both;
+}
 
 Baked bake_file(const Options& options) {
   Baked out;
@@ -58,6 +71,7 @@ Baked bake_file(const Options& options) {
   const bake::CheckReport check = bake::check(read.mesh);
   bake::require_bakeable(check, checked, options.strict);
   bake::BakeOptions how = options.bake;
+  how.engine = engine_of(options);
   how.repaired = !out.repairs.empty();
   how.source_sha256 = read.sha256;
   out.bytes = bake::bake(read.mesh, check, how, progress, out.report);
@@ -97,10 +111,6 @@ void print(const Options& options, const Baked& baked, const ImageView& image) {
 }
 
 void bake(const Options& options) {
-  if (options.engine != "levels") {
-    throw Failure(kUsage, "this format version has no section for the regions engine",
-                  "--engine " + options.engine, "use --engine levels");
-  }
   const Baked baked = bake_file(options);
   const bake::AlignedCopy image(baked.bytes);
   const ImageView view = view_of(image);
@@ -165,9 +175,11 @@ void add_bake(CLI::App& app) {
   command->add_flag("--strict", options->strict, "Refuse a mesh whose faces cross one another");
   add_stop_rules(*command, options->bake);
   add_requirements(*command, options->bake);
-  command->add_option("--engine", options->engine, "Query engine that the image is for")
-      ->check(CLI::IsMember({"levels", "regions", "both"}))
-      ->capture_default_str();
+  command
+      ->add_option("--engine", options->engine,
+                   "Query engine that the image is for; default: both, or levels where --s0-min or "
+                   "--max-bytes leave something out")
+      ->check(CLI::IsMember({"levels", "regions", "both"}));
   command->add_option("--threads", options->bake.threads, "Threads to use, 0: all cores")
       ->check(CLI::Range(0u, kMaxThreads))
       ->capture_default_str();

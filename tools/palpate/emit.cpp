@@ -4,7 +4,9 @@
 #include <cctype>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "hal/flash/dfu_suffix.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/image_file.hpp"
 
@@ -19,6 +21,7 @@ struct EmitOptions {
   std::string section;
   std::string machine = "x86_64";
   std::uint32_t address = 0;
+  hal::flash::DfuSuffix suffix;
 };
 
 bool is_word(const std::string& text, std::string_view also) {
@@ -34,8 +37,8 @@ void check_options(const CLI::App& command, const std::string& form) {
   constexpr struct {
     const char* name;
     std::string_view forms;
-  } kOptions[] = {
-      {"--symbol", "c elf"}, {"--section", "c elf"}, {"--address", "hex"}, {"--machine", "elf"}};
+  } kOptions[] = {{"--symbol", "c elf"}, {"--section", "c elf"}, {"--address", "hex"},
+                  {"--machine", "elf"},  {"--vendor-id", "dfu"}, {"--product-id", "dfu"}};
   for (const auto& option : kOptions) {
     if (command.count(option.name) > 0 && option.forms.find(form) == std::string_view::npos) {
       throw Failure(kUsage, "option has no meaning for this form",
@@ -78,11 +81,15 @@ bake::Machine machine_of(const EmitOptions& options, std::size_t size) {
   return bake::Machine::arm;
 }
 
+std::vector<std::byte> to_dfu_file(std::span<const std::byte> image,
+                                   const hal::flash::DfuSuffix& suffix) {
+  std::vector<std::byte> file(image.begin(), image.end());
+  const auto tail = hal::flash::make_suffix(image, suffix);
+  file.insert(file.end(), tail.begin(), tail.end());
+  return file;
+}
+
 void emit(const EmitOptions& options) {
-  if (options.form == "dfu") {
-    throw Failure(kUsage, "this version does not write DFU files", "--as dfu",
-                  "use --as hex, or --as elf and your linker");
-  }
   check_names(options);
   const ImageFile image(options.image);
   const auto bytes = image.bytes();
@@ -91,6 +98,8 @@ void emit(const EmitOptions& options) {
   } else if (options.form == "hex") {
     check_address(options.address, bytes.size());
     write_file(options.out, bake::to_intel_hex(bytes, options.address));
+  } else if (options.form == "dfu") {
+    write_file(options.out, to_dfu_file(bytes, options.suffix));
   } else {
     const std::string section = options.section.empty() ? ".palpate_image" : options.section;
     write_file(options.out, bake::to_elf_object(bytes, machine_of(options, bytes.size()), section,
@@ -103,7 +112,8 @@ void emit(const EmitOptions& options) {
 void add_emit(CLI::App& app) {
   auto options = std::make_shared<EmitOptions>();
   CLI::App* command = app.add_subcommand(
-      "emit", "Write an image as C source, Intel HEX or a linkable ELF object, byte for byte");
+      "emit",
+      "Write an image as C source, Intel HEX, a linkable ELF object or a DFU file, byte for byte");
   command->add_option("IMAGE", options->image, "Image made by bake")->required();
   command->add_option("--as", options->form, "What to write")
       ->required()
@@ -117,6 +127,14 @@ void add_emit(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--machine", options->machine, "elf: what the object is linked for")
       ->check(CLI::IsMember({"x86_64", "aarch64", "arm"}))
+      ->capture_default_str();
+  command
+      ->add_option("--vendor-id", options->suffix.vendor,
+                   "dfu: USB vendor that the file is for, 0xffff for any")
+      ->capture_default_str();
+  command
+      ->add_option("--product-id", options->suffix.product,
+                   "dfu: USB product that the file is for, 0xffff for any")
       ->capture_default_str();
   command->callback([command, options] {
     check_options(*command, options->form);

@@ -30,6 +30,8 @@ constexpr std::initializer_list<void (*)(CLI::App&)> kCommands = {
     add_emit,
     add_replay,
     add_run,
+    add_devices,
+    add_flash,
     add_doctor,
     // clang-format on
 };

@@ -25,21 +25,17 @@ struct Arguments {
 
 /// The scene as the file has it, then as the command line wants it.
 config::Scene load(const Arguments& a) {
-  if (a.force_tolerance_N) {
-    throw Failure(kUsage,
-                  "--force-tolerance is for the regions engine, which this build does not have",
-                  "palpate replay", "leave it out");
-  }
   if (a.contacts == a.ticks) {
     throw Failure(kUsage, "ticks and contacts cannot be one file", a.ticks,
                   "give --contacts another name");
   }
   config::Scene scene = config::load_scene(a.scene);
-  if (a.engine == "levels") scene.engine = config::EngineKind::levels;
-  if (a.engine == "regions") scene.engine = config::EngineKind::regions;
+  if (a.engine == "levels") scene.settings.engine = EngineKind::levels;
+  if (a.engine == "regions") scene.settings.engine = EngineKind::regions;
   if (a.exact) scene.settings.exact = true;
   if (a.s0) scene.settings.s0 = *a.s0;
   if (a.kappa) scene.kappa = a.kappa;
+  if (a.force_tolerance_N) scene.settings.force_tolerance_N = *a.force_tolerance_N;
   if (a.exact || a.budget_us || a.options.budget_units) scene.budget_us = a.budget_us;
   return scene;
 }
@@ -179,9 +175,12 @@ void add_replay(CLI::App& app) {
                     "whatever the scene says");
   command->add_option("--s0", a->s0, "in place of the scene's s0")->check(number_between(0, 1e6));
   add_budget(*command, *a);
-  command->add_option("--kappa", a->kappa, "in place of the scene's kappa")
+  command->add_option("--kappa", a->kappa, "in place of the scene's kappa (levels engine)")
       ->check(number_between(0, 1e6));
-  command->add_option("--force-tolerance", a->force_tolerance_N, "regions engine only");
+  command
+      ->add_option("--force-tolerance", a->force_tolerance_N,
+                   "in place of the scene's force_tolerance_N (regions engine)")
+      ->check(number_between(0, 1e18));
   command
       ->add_option("--repeat", a->options.repeat,
                    "replay this often, report the last one with the median times")

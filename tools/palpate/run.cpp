@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 
 #include "hal/mock/device.hpp"
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/device_choice.hpp"
 #include "tools/palpate/run_summary.hpp"
 #include "tools/palpate/scene_engine.hpp"
 #include "tools/realtime/engine_query.hpp"
@@ -36,6 +38,7 @@ struct RunOptions {
   std::string device = "mock";
   std::optional<double> seconds;
   std::optional<double> rate_Hz;
+  std::filesystem::path firmware;
   std::string trace;
   realtime::RealtimeOptions realtime;
   bool json = false;
@@ -83,22 +86,16 @@ hal::mock::HandParameters hand_of(const config::Scene& scene) {
   return hand;
 }
 
-[[noreturn]] void fail(const std::string& device, const hal::DeviceProblem& problem) {
-  throw Failure(kDevice, "device failed at " + problem.phase + ", " + problem.cause, device,
-                problem.mend);
-}
-
 std::unique_ptr<hal::Device> make_device(const RunOptions& options, const config::Scene& scene,
-                                         double rate_Hz) {
-  const std::string kind = options.device.substr(0, options.device.find(':'));
-  if (kind != "mock") {
-    throw Failure(kDevice, "this build drives the mock device only", options.device,
-                  "run with --device mock");
+                                         double rate_Hz, hal::Clock& clock) {
+  const int priority = options.realtime.fifo_priority;
+  if (options.device != "mock") {
+    // Below the loop, which does not wait for it; above everything else.
+    return make_usb_device(options.device, options.firmware, clock, std::max(priority - 1, 0));
   }
   hal::mock::Options mock;
   mock.rate_Hz = kMockReadingsPerTick * rate_Hz;
   // It stands in for hardware, which the loop does not keep waiting either.
-  const int priority = options.realtime.fifo_priority;
   mock.fifo_priority = priority == 0 ? 0 : std::min(priority + 1, realtime::kMaxFifoPriority);
   return std::make_unique<hal::mock::MockDevice>(hand_of(scene), mock);
 }
@@ -165,13 +162,13 @@ void report(const RunOptions& options, const RunOutcome& outcome) {
 void run(const RunOptions& options) {
   const config::Scene scene = config::load_scene(options.scene);
   const double rate_Hz = options.rate_Hz.value_or(scene.rate_Hz);
-  const auto device = make_device(options, scene, rate_Hz);
+  hal::MonotonicClock clock;
+  const auto device = make_device(options, scene, rate_Hz, clock);
   SceneEngine engine(scene);
   realtime::EngineQuery query(engine.engine(), engine.start_poses(), scene.tool);
   if (const auto problem = device->open()) fail(options.device, *problem);
 
   const auto settings = loop_settings(options, scene, rate_Hz, device->capabilities());
-  hal::MonotonicClock clock;
   hal::Ring<realtime::TraceRecord> ring(options.trace.empty() ? 0 : kTelemetryRecords);
   std::unique_ptr<realtime::TraceWriter> trace;
   if (!options.trace.empty()) {
@@ -181,6 +178,9 @@ void run(const RunOptions& options) {
   }
   const auto loop =
       std::make_unique<realtime::Loop>(settings, *device, query, clock, trace ? &ring : nullptr);
+  if (parse_device(options.device).kind == "falcon" && !options.quiet) {
+    std::cerr << "Pull the grip all the way out, then push it all the way in.\n";
+  }
   if (const auto problem = device->start()) fail(options.device, *problem);
 
   RunOutcome outcome;
@@ -206,14 +206,10 @@ void add_run(CLI::App& app) {
   CLI::App* command = app.add_subcommand("run", "Run the real-time loop against a device");
   command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
   command->add_option("--device", options->device, "mock, usb[:SERIAL] or falcon[:SERIAL]")
-      ->check(CLI::Validator(
-          [](const std::string& device) -> std::string {
-            const std::string kind = device.substr(0, device.find(':'));
-            const bool known = device == "mock" || kind == "usb" || kind == "falcon";
-            return known ? "" : "unknown device '" + device + "'";
-          },
-          "DEVICE"))
+      ->check(is_device())
       ->capture_default_str();
+  command->add_option("--firmware", options->firmware,
+                      "falcon: the maker's firmware file; absent: it runs already");
   command->add_option("--seconds", options->seconds, "how long; absent: until Ctrl-C")
       ->check(CLI::Range(0.001, 1e7));
   command->add_option("--rate", options->rate_Hz, "ticks a second; absent: the scene's")

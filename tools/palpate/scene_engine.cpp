@@ -10,12 +10,8 @@
 namespace palpate::cli {
 
 SceneEngine::SceneEngine(const config::Scene& scene) : config_(scene), limits_(scene.limits) {
-  if (config_.engine == config::EngineKind::regions) {
-    throw Failure(kUsage, "this build has no regions engine", config_.file.string(),
-                  "use engine = \"levels\" or --engine levels");
-  }
   open_images();
-  const std::size_t bytes = required_bytes(scene_, limits_);
+  const std::size_t bytes = required_bytes(scene_, limits_, config_.settings.engine);
   if (bytes == 0) {
     throw Failure(kUsage, "the engine cannot work within these [limits]", config_.file.string(),
                   "raise or remove nodes, contacts and clusters");
@@ -63,7 +59,8 @@ bool SceneEngine::grow() {
   Limits larger = limits_;
   larger.nodes *= 2;
   larger.contacts *= 2;
-  const std::size_t bytes = larger.nodes > limits_.nodes ? required_bytes(scene_, larger) : 0;
+  const std::size_t bytes =
+      larger.nodes > limits_.nodes ? required_bytes(scene_, larger, config_.settings.engine) : 0;
   if (bytes == 0 || !fits(image_bytes_ + bytes)) return false;
   limits_ = larger;
   allocate(bytes);

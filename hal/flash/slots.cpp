@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/flash/slots.hpp"
+
+#include "hal/protocol/bytes.hpp"
+#include "hal/protocol/crc32.hpp"
+#include "rt_core/image/view.hpp"
+
+namespace palpate::hal::flash {
+namespace {
+
+constexpr std::byte kErased{0xff};
+constexpr std::byte kCommitByte{0xc3};
+
+// Offsets within a record; each group is one program unit.
+constexpr std::uint32_t kHeaderAt = 0;
+constexpr std::uint32_t kCommitAt = 32;
+constexpr std::uint32_t kTriedAt = 64;
+constexpr std::uint32_t kConfirmedAt = kTriedAt + kMaxTries * kProgramBytes;
+
+// Offsets within the header.
+constexpr std::size_t kMagicAt = 0;
+constexpr std::size_t kSequenceAt = 8;
+constexpr std::size_t kImageBytesAt = 16;
+constexpr std::size_t kCrcAt = 24;
+constexpr std::uint64_t kMagic = 0x544f4c53504c4150;  // "PALPSLOT"
+
+using Unit = std::array<std::byte, kProgramBytes>;
+
+constexpr Unit unit_of(std::byte value) noexcept {
+  Unit unit{};
+  for (std::byte& b : unit) b = value;
+  return unit;
+}
+
+Unit header_of(std::uint64_t sequence, std::uint32_t image_bytes) noexcept {
+  Unit unit{};
+  put(std::span<std::byte>(unit), kMagicAt, kMagic);
+  put(std::span<std::byte>(unit), kSequenceAt, sequence);
+  put(std::span<std::byte>(unit), kImageBytesAt, image_bytes);
+  const auto covered = std::span<const std::byte>(unit).first(kCrcAt);
+  put(std::span<std::byte>(unit), kCrcAt, ~crc32_update(kCrc32Start, covered));
+  return unit;
+}
+
+bool all_are(std::span<const std::byte> bytes, std::byte value) noexcept {
+  bool all = true;
+  for (const std::byte b : bytes) all = all && b == value;
+  return all;
+}
+
+/// Exactly the header that this program writes.
+bool is_header(std::span<const std::byte> bytes) noexcept {
+  const Unit right =
+      header_of(get<std::uint64_t>(bytes, kSequenceAt), get<std::uint32_t>(bytes, kImageBytesAt));
+  bool same = true;
+  for (std::size_t i = 0; i < kProgramBytes; ++i) same = same && bytes[i] == right[i];
+  return same;
+}
+
+}  // namespace
+
+std::uint8_t Slots::start() noexcept {
+  active_ = updating_ = kNone;
+  std::array<SlotState, kSlots> states;
+  for (std::uint8_t s = 0; s < kSlots; ++s) states[s] = state(s);
+  for (std::uint8_t round = 0; round < kSlots; ++round) {
+    const std::uint8_t newest =
+        states[1].usable && (!states[0].usable || states[1].sequence > states[0].sequence) ? 1 : 0;
+    SlotState& chosen = states[newest];
+    if (!chosen.usable) break;
+    if (chosen.confirmed ||
+        flash_.program(
+            offset_of(newest) + kTriedAt + chosen.tries * static_cast<std::uint32_t>(kProgramBytes),
+            unit_of(std::byte{0}))) {
+      active_ = newest;
+      break;
+    }
+    // A start that cannot be recorded could be repeated for ever.
+    chosen.usable = false;
+  }
+  return active_;
+}
+
+bool Slots::confirm() noexcept {
+  if (active_ == kNone) return false;
+  const auto word = record_of(active_).subspan(kConfirmedAt, kProgramBytes);
+  return !all_are(word, kErased) ||
+         flash_.program(offset_of(active_) + kConfirmedAt, unit_of(std::byte{0}));
+}
+
+SlotState Slots::state(std::uint8_t slot) const noexcept {
+  SlotState out;
+  const auto record = record_of(slot);
+  const auto header = record.subspan(kHeaderAt, kProgramBytes);
+  const bool committed = all_are(record.subspan(kCommitAt, kProgramBytes), kCommitByte);
+  if (!committed || !is_header(header)) return out;
+  const auto image_bytes = get<std::uint32_t>(header, kImageBytesAt);
+  if (image_bytes > layout_.capacity()) return out;
+  const auto image = flash_.bytes().subspan(offset_of(slot) + layout_.erase_bytes, image_bytes);
+  ImageView view;
+  if (validate(image, view) != Status::ok) return out;
+
+  out.image = image;
+  out.sequence = get<std::uint64_t>(header, kSequenceAt);
+  out.confirmed = !all_are(record.subspan(kConfirmedAt, kProgramBytes), kErased);
+  while (out.tries < kMaxTries &&
+         !all_are(record.subspan(kTriedAt + out.tries * kProgramBytes, kProgramBytes), kErased)) {
+    ++out.tries;
+  }
+  out.usable = out.confirmed || out.tries < kMaxTries;
+  return out;
+}
+
+UpdateStatus Slots::begin(std::uint8_t slot) noexcept {
+  updating_ = kNone;
+  if (slot >= kSlots) return UpdateStatus::too_large;
+  if (slot == active_) return UpdateStatus::in_use;
+  // The record first: from here on the slot holds no image, however far the rest comes.
+  for (std::uint32_t unit = 0; unit <= layout_.image_units; ++unit) {
+    if (!flash_.erase(offset_of(slot) + unit * layout_.erase_bytes)) {
+      return UpdateStatus::erase_failed;
+    }
+  }
+  updating_ = slot;
+  written_ = 0;
+  buffered_ = 0;
+  return UpdateStatus::ok;
+}
+
+UpdateStatus Slots::write(std::span<const std::byte> bytes) noexcept {
+  if (updating_ == kNone) return UpdateStatus::not_begun;
+  if (bytes.size() > layout_.capacity() - written_) {
+    abort();
+    return UpdateStatus::too_large;
+  }
+  for (const std::byte b : bytes) {
+    buffer_[buffered_++] = b;
+    ++written_;
+    if (buffered_ < kProgramBytes) continue;
+    const UpdateStatus status = flush();
+    if (status != UpdateStatus::ok) return status;
+  }
+  return UpdateStatus::ok;
+}
+
+UpdateStatus Slots::finish() noexcept {
+  if (updating_ == kNone) return UpdateStatus::not_begun;
+  const UpdateStatus flushed = flush();
+  if (flushed != UpdateStatus::ok) return flushed;
+  const std::uint8_t slot = updating_;
+  abort();
+  const std::uint32_t at = offset_of(slot);
+  const auto image = flash_.bytes().subspan(at + layout_.erase_bytes, written_);
+  ImageView view;
+  if (validate(image, view) != Status::ok) return UpdateStatus::not_an_image;
+  const bool recorded =
+      flash_.program(at + kHeaderAt, header_of(newest_sequence() + 1, written_)) &&
+      flash_.program(at + kCommitAt, unit_of(kCommitByte));
+  return recorded ? UpdateStatus::ok : UpdateStatus::write_failed;
+}
+
+UpdateStatus Slots::flush() noexcept {
+  if (buffered_ == 0) return UpdateStatus::ok;
+  for (std::size_t i = buffered_; i < kProgramBytes; ++i) buffer_[i] = kErased;
+  const std::uint32_t behind = written_ - static_cast<std::uint32_t>(buffered_);
+  buffered_ = 0;
+  if (flash_.program(offset_of(updating_) + layout_.erase_bytes + behind, buffer_)) {
+    return UpdateStatus::ok;
+  }
+  abort();
+  return UpdateStatus::write_failed;
+}
+
+std::span<const std::byte> Slots::record_of(std::uint8_t slot) const noexcept {
+  return flash_.bytes().subspan(offset_of(slot), layout_.erase_bytes);
+}
+
+std::uint64_t Slots::newest_sequence() const noexcept {
+  std::uint64_t newest = 0;
+  for (std::uint8_t slot = 0; slot < kSlots; ++slot) {
+    const std::uint64_t sequence = state(slot).sequence;
+    newest = sequence > newest ? sequence : newest;
+  }
+  return newest;
+}
+
+}  // namespace palpate::hal::flash

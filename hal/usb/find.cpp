@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hal/usb/find.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "hal/falcon/ftdi.hpp"
+#include "hal/flash/dfu.hpp"
+#include "hal/protocol/packets.hpp"
+#include "hal/usb/libusb_transport.hpp"
+
+namespace palpate::hal::usb {
+namespace {
+
+constexpr const char* kRuleMend =
+    "install config/udev/70-palpate.rules as /etc/udev/rules.d/70-palpate.rules, then "
+    "'sudo udevadm control --reload' and plug the device in again";
+
+struct Candidate {
+  libusb_device* device = nullptr;
+  std::uint8_t serial_index = 0;
+  Interface interface;
+};
+
+bool is_class(const libusb_interface_descriptor& d, std::uint8_t device_class,
+              std::uint8_t subclass, std::uint8_t protocol) {
+  return d.bInterfaceClass == device_class && d.bInterfaceSubClass == subclass &&
+         d.bInterfaceProtocol == protocol;
+}
+
+bool is_of_kind(Kind kind, const libusb_device_descriptor& device,
+                const libusb_interface_descriptor& d) {
+  switch (kind) {
+    case Kind::falcon:
+      return device.idVendor == falcon::kVendorId && device.idProduct == falcon::kProductId;
+    case Kind::open_protocol:
+      return is_class(d, protocol::kInterfaceClass, protocol::kInterfaceSubclass,
+                      protocol::kInterfaceProtocol);
+    case Kind::update:
+      return is_class(d, flash::kDfuClass, flash::kDfuSubclass, flash::kDfuModeProtocol);
+  }
+  return false;
+}
+
+Interface interface_of(const libusb_interface_descriptor& d) {
+  Interface out;
+  out.number = d.bInterfaceNumber;
+  for (const auto& endpoint : std::span(d.endpoint, d.bNumEndpoints)) {
+    const auto type = static_cast<std::uint8_t>(endpoint.bmAttributes & 3);
+    const bool usable = type == LIBUSB_TRANSFER_TYPE_BULK || type == LIBUSB_TRANSFER_TYPE_INTERRUPT;
+    const bool is_in = (endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0;
+    if (!usable || (is_in ? out.in_address : out.out_address) != 0) continue;
+    (is_in ? out.in_address : out.out_address) = endpoint.bEndpointAddress;
+    (is_in ? out.in_type : out.out_type) = type;
+    // The upper bits say how many packets a microframe takes.
+    if (is_in) out.in_packet_bytes = endpoint.wMaxPacketSize & 0x7ff;
+  }
+  return out;
+}
+
+bool is_exchange(Kind kind) { return kind != Kind::update; }
+
+std::optional<Candidate> candidate_of(Kind kind, libusb_device* device) {
+  libusb_device_descriptor descriptor{};
+  if (libusb_get_device_descriptor(device, &descriptor) != 0) return std::nullopt;
+  const Config config = active_config(device);
+  if (!config) return std::nullopt;
+  for (const auto& interface : std::span(config->interface, config->bNumInterfaces)) {
+    if (interface.num_altsetting < 1) continue;
+    const libusb_interface_descriptor& d = interface.altsetting[0];
+    if (!is_of_kind(kind, descriptor, d)) continue;
+    Candidate c{device, descriptor.iSerialNumber, interface_of(d)};
+    const bool has_both = c.interface.in_address != 0 && c.interface.out_address != 0;
+    if (has_both || !is_exchange(kind)) return c;
+  }
+  return std::nullopt;
+}
+
+DeviceProblem problem_of(int error) {
+  switch (error) {
+    case LIBUSB_ERROR_ACCESS:
+      return {"open", "no permission to use the device", kRuleMend};
+    case LIBUSB_ERROR_BUSY:
+      return {"claim", "another program uses the device", "end that program"};
+    case LIBUSB_ERROR_NO_DEVICE:
+      return {"open", "the device is gone", "plug it in again"};
+    default:
+      return {"open", libusb_error_name(error), "plug the device in again"};
+  }
+}
+
+/// An open device with its interface claimed.
+struct Claimed {
+  Handle handle;
+  std::string serial;
+  std::optional<DeviceProblem> problem;
+};
+
+Claimed claim(const Candidate& candidate) {
+  Claimed out;
+  libusb_device_handle* handle = nullptr;
+  int error = libusb_open(candidate.device, &handle);
+  if (error == 0) {
+    out.handle.reset(handle);
+    out.serial = read_string(handle, candidate.serial_index);
+    libusb_set_auto_detach_kernel_driver(handle, 1);
+    error = libusb_claim_interface(handle, candidate.interface.number);
+  }
+  if (error != 0) out.problem = problem_of(error);
+  return out;
+}
+
+FoundDevice describe(Kind kind, const Candidate& candidate) {
+  Claimed claimed = claim(candidate);
+  FoundDevice found;
+  found.kind = kind;
+  found.serial = claimed.serial;
+  found.path = port_path(candidate.device);
+  found.ready = !claimed.problem;
+  if (claimed.problem) {
+    found.problem = claimed.problem->cause;
+    found.mend = claimed.problem->mend;
+  } else {
+    libusb_release_interface(claimed.handle.get(), candidate.interface.number);
+  }
+  return found;
+}
+
+}  // namespace
+
+std::string_view name(Kind kind) noexcept {
+  switch (kind) {
+    case Kind::open_protocol:
+      return "usb";
+    case Kind::falcon:
+      return "falcon";
+    case Kind::update:
+      return "update";
+  }
+  return "unknown";
+}
+
+std::vector<FoundDevice> find_devices() {
+  std::vector<FoundDevice> found;
+  const Context context = make_context();
+  if (!context) return found;
+  for (libusb_device* device : DeviceList(context.get())) {
+    for (const Kind kind : {Kind::open_protocol, Kind::falcon}) {
+      if (const auto c = candidate_of(kind, device)) found.push_back(describe(kind, *c));
+    }
+  }
+  return found;
+}
+
+std::variant<std::unique_ptr<Transport>, DeviceProblem> open_transport(Kind kind,
+                                                                       const std::string& serial) {
+  Context context = make_context();
+  if (!context) return DeviceProblem{"USB", "libusb cannot be used on this host", "see 'lsusb'"};
+  const DeviceList list(context.get());
+  std::optional<Claimed> chosen;
+  Interface interface;
+  for (libusb_device* device : list) {
+    const auto candidate = candidate_of(kind, device);
+    if (!candidate) continue;
+    Claimed claimed = claim(*candidate);
+    // One that cannot be opened cannot say its serial number: it may be the one that is meant.
+    if (!serial.empty() && claimed.handle && claimed.serial != serial) continue;
+    if (chosen && !chosen->problem) {
+      return DeviceProblem{"find", "more than one such device is connected",
+                           "name one by its serial number; 'palpate devices' lists them"};
+    }
+    chosen = std::move(claimed);
+    interface = candidate->interface;
+  }
+  if (!chosen) {
+    return DeviceProblem{"find", "no such device is connected",
+                         "plug it in and switch it on; 'palpate devices' lists what is there"};
+  }
+  if (chosen->problem) return *chosen->problem;
+  return std::make_unique<LibusbTransport>(std::move(context), std::move(chosen->handle),
+                                           interface);
+}
+
+}  // namespace palpate::hal::usb

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Divides a surface in two, again and again: first into regions, then into groups of at most
+// sixteen triangles.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "host_bake/mesh/mesh.hpp"
+#include "rt_core/image/region_format.hpp"
+
+namespace palpate::bake {
+
+struct RegionOptions {
+  /// Regions larger than this are divided; relative to the object's radius.
+  double radius = 0.06;
+  /// Regions in which a part of the surface turns away from the mean normal by more than the angle
+  /// of this cosine are divided by normal: two opposite walls must not share a region, or the force
+  /// jumps when the nearer one changes.
+  double cosine = 0.2;
+  /// ... unless smaller than this share of `radius`: roughness below it is one feature.
+  double least_share = 0.25;
+};
+
+/// Regions for contacts within delta_rel: a few deltas large, for smaller ones cost time and larger
+/// ones make the force jump; never so small that a fine delta makes thousands of them.
+RegionOptions region_options(double delta_rel);
+
+/// A binary tree over runs of `faces`; node 0 is the root, children follow their parent.
+struct Partition {
+  struct Node {
+    std::uint32_t first = 0;  ///< into faces
+    std::uint32_t count = 0;
+    std::uint32_t child = 0;  ///< the first of two; 0: a group, not divided further
+    bool region = false;      ///< a region's root
+  };
+  static bool is_group(const Node& n) { return n.child == 0; }  ///< at most sixteen triangles
+
+  std::vector<std::uint32_t> faces;  ///< a permutation of the mesh's
+  std::vector<Node> nodes;
+};
+
+/// Positions are divided across the longest principal axis of the triangles' centres, at a multiple
+/// of sixteen near the middle, so that groups are full. Every group is in exactly one region.
+/// Deterministic. O(n log^2 n).
+Partition divide(const NormalMesh& mesh, const RegionOptions& options);
+
+}  // namespace palpate::bake

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two inner loops of the region engine, for the widest instruction set at hand: one box against
+// the boxes of a node, and sixteen pairs of triangles.
+//
+// Every table gives the same bits (simd.hpp). They are chosen once, when an engine is made.
+#pragma once
+
+#include <cstdint>
+
+#include "rt_core/geometry/pose.hpp"
+#include "rt_core/image/region_format.hpp"
+
+namespace palpate::regions {
+
+inline constexpr std::uint32_t kBatch = image::kRegionWidth;  ///< pairs of triangles at once
+
+/// An oriented box in the coordinates of its image. Columns 0 to 2 are the axes, 3 the centre.
+struct alignas(16) Box {
+  float x[4];
+  float y[4];
+  float z[4];
+  float half[4];  ///< [3] unused
+};
+
+/// Maps image coordinates of one body to those of the other: scale * rotation * x + translation.
+struct Transform {
+  float rotation[9];  ///< row by row
+  float translation[3];
+  float scale;
+};
+
+/// Pairs of triangles by their corners, component by component, in coordinates near the pair.
+struct TriangleLanes {
+  alignas(64) float a[9][kBatch];  ///< corner, then axis
+  alignas(64) float b[9][kBatch];
+};
+
+/// Closest points of pairs of triangles, in the coordinates of the lanes.
+struct WitnessLanes {
+  alignas(64) float on_a[3][kBatch];
+  alignas(64) float apart[3][kBatch];  ///< from the point on b to the point on a
+  std::uint32_t crossing;              ///< bit i: an edge of one pierces the other
+};
+
+/// Working memory of one call at a time, about 10 KB; needs no initialisation.
+struct KernelScratch {
+  TriangleLanes lanes;
+  alignas(64) float rows[112][kBatch];
+};
+
+struct Kernels {
+  const char* name;
+
+  /// Bounds from below, squared, of the distances of a box from the boxes of a node, in the unit of
+  /// the node's image: both boxes are projected on the axes of both; gaps along three orthogonal
+  /// axes add by squares (separating axes, Gottschalk, Lin and Manocha 1996, without the crossed
+  /// ones). Rounding: the root is too large by at most 1e-6 of the farther box's distance from the
+  /// origin. Fills all lanes; those beyond the last child repeat the first.
+  /// @return bit i set where out[i] < below
+  std::uint32_t (*test_boxes)(const Box& box, const Transform& to_node,
+                              const image::RegionNode& node, float below,
+                              float (&out_squared)[kBatch]) noexcept;
+
+  /// Squared distances of kBatch pairs of triangles, in the unit of b's image; crossing pairs have
+  /// 0 and their bit in the result. All features: 9 pairs of edges, 6 corners and faces, 6
+  /// piercings; slivers, segments and points are triangles too. The root is right to 1e-6.
+  std::uint32_t (*triangle_distances)(const image::RegionTriangle* const (&a)[kBatch],
+                                      const image::RegionTriangle* const (&b)[kBatch],
+                                      const Transform& a_to_b, KernelScratch& scratch,
+                                      float (&out_squared)[kBatch]) noexcept;
+
+  /// Closest points of the kBatch pairs in scratch.lanes; where a pair crosses, of its edges and
+  /// corners.
+  void (*witnesses)(KernelScratch& scratch, WitnessLanes& out) noexcept;
+};
+
+/// The widest table that this processor and its operating system can run. Asks the processor: not
+/// for the real-time loop.
+const Kernels& best_kernels() noexcept;
+
+/// All tables that can run here, narrowest first; for tests.
+/// @return how many of out are set
+std::uint32_t all_kernels(const Kernels* (&out)[3]) noexcept;
+
+// What each translation unit provides; null where the build or the target has no such instructions.
+const Kernels* kernels_base() noexcept;
+const Kernels* kernels_avx2() noexcept;
+const Kernels* kernels_avx512() noexcept;
+
+}  // namespace palpate::regions

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// The second contact query: certified bounds of the distance of every region of a from b, refined
+// where they can still change the force most, inside a budget.
+//
+// Beyond the paper. docs/DESIGN.md gives the reasons; the levels engine answers the same question
+// from convex pieces.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "rt_core/base/meter.hpp"
+#include "rt_core/convex/penetration.hpp"
+#include "rt_core/levels/body_pair.hpp"
+#include "rt_core/palpate_rt.hpp"
+#include "rt_core/regions/crossing.hpp"
+#include "rt_core/regions/kernels.hpp"
+#include "rt_core/regions/search.hpp"
+#include "rt_core/regions/sweep.hpp"
+
+namespace palpate::regions {
+
+/// What is kept of a region from tick to tick: a witness and a bound. Lengths in units of the pair.
+struct RegionState {
+  float lower = 0;       ///< proved lower bound of its distance from b, when the odometers of the
+  double travel_at = 0;  ///< ... pair stood here
+  double turn_at = 0;
+  Witness witness;  ///< its distance is of the last tick in which the region was near
+  std::uint32_t seed = image::kNone;  ///< where to look for a witness: a child of b's tree
+};
+
+/// A region that may be nearer than delta in this tick.
+struct Active {
+  float lower = 0;  ///< at the present poses
+  float width = 0;  ///< min(witness, delta) - lower: what its force may still change by
+  std::uint32_t state = 0;
+  std::uint32_t region = 0;
+  std::uint32_t pair = 0;
+};
+
+/// Memory of the query, borrowed from the engine.
+struct QueryMemory {
+  const Kernels* kernels = nullptr;
+  std::span<levels::PairState> pairs;
+  std::span<PairFrame> frames;           ///< [pairs]
+  std::span<std::uint32_t> first_state;  ///< [pairs], into states
+  std::span<RegionState> states;         ///< [sum over pairs of the regions of a]
+  std::span<Active> active;              ///< [states]
+  std::span<std::uint32_t> queue;        ///< [states]
+  std::span<Swept> swept;                ///< [most regions of one body]
+  std::span<Contact> contacts;           ///< [limits.contacts]
+  SearchScratch* search = nullptr;
+  CrossingScratch* crossing = nullptr;
+};
+
+/// What a query found.
+struct QueryResult {
+  std::uint32_t contacts = 0;     ///< the first ones of QueryMemory::contacts
+  double min_distance_m = 0;      ///< least over contacts; infinity without contacts
+  double unresolved_lower_m = 0;  ///< least lower bound of a region that may be nearer than delta;
+                                  ///< infinity where there is none
+  double open_m = 0;              ///< sum over regions of min(upper, delta) - lower
+  double capped_gap_m = 0;        ///< no iteration cap leaves a gap here
+  double s_worst = 0;             ///< largest radius of a region that is not resolved, relative
+  std::uint64_t near_regions = 0;
+  std::uint64_t queries = 0;  ///< work units
+  bool truncated_by_time = false;
+  bool truncated_by_units = false;
+  bool truncated_by_memory = false;
+  bool iteration_cap_met = false;
+};
+
+/// How far a query goes.
+struct Demand {
+  double tolerance_m = 0;  ///< the sum of all open intervals may stay this wide; 0: exact
+  bool limited = false;    ///< there is a budget: what is widest goes first
+};
+
+/// The least distance of every region of a from b that is below delta, for all pairs, whose poses
+/// and deltas are set.
+///
+/// Regions whose lower bound, less the motion since it was proved, is delta or more cost nothing.
+/// The witnesses of the others are measured at the present poses, moved to nearer neighbours, and
+/// bound the distances from above; then the regions are searched (search.hpp), under a budget the
+/// widest interval first and closed in steps. Whatever ends it, every interval holds its distance,
+/// and every witness nearer than delta is a contact. Where triangles cross, the pieces that they
+/// belong to give depth and direction (crossing.hpp).
+///
+/// A contact's pieces are those of level 0 that hold the witnesses. Cost: the budget, plus
+/// O(regions), plus one witness of each near region.
+QueryResult query(QueryMemory& memory, const Demand& demand, Meter& meter) noexcept;
+
+}  // namespace palpate::regions

@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/search.hpp"
+
+#include <limits>
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/regions/named_box.hpp"
+
+namespace palpate::regions {
+namespace {
+
+using image::RegionNode;
+using image::RegionTriangle;
+
+constexpr float kFar = std::numeric_limits<float>::max();
+/// More than any distance, with a square that is still a float.
+constexpr float kFarthest = 1e18f;
+
+/// Distances of sixteen pairs at once, in units.
+std::uint32_t evaluate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
+                       float (&out_squared)[kBatch]) noexcept {
+  const RegionTriangle* a[kBatch];
+  const RegionTriangle* b[kBatch];
+  for (std::uint32_t i = 0; i < kBatch; ++i) {
+    a[i] = &frame.a->region_triangles[scratch.batch_a[i]];
+    b[i] = &frame.b->region_triangles[scratch.batch_b[i]];
+  }
+  const std::uint32_t crossing =
+      kernels.triangle_distances(a, b, frame.a_to_b, scratch.kernel, out_squared);
+  for (float& squared : out_squared) squared *= frame.scale2_b;
+  return crossing;
+}
+
+class Search {
+ public:
+  Search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+         const Witness& witness, float limit, float tolerance) noexcept
+      : kernels_(kernels),
+        frame_(frame),
+        scratch_(scratch),
+        pace_(pace),
+        limit_(limit),
+        tolerance_(tolerance) {
+    out_.best = witness;
+    best_squared_ = witness.known() ? witness.distance * witness.distance : kFar;
+    lower_threshold();
+  }
+
+  Bounds run(const image::Region& region) noexcept {
+    visit_root(child_name(region.parent, region.slot));
+    return finish();
+  }
+
+  /// Looks at everything within the limit, and keeps what crosses.
+  void collect(const image::Region& region, CrossingList& list) noexcept {
+    crossings_ = &list;
+    visit_root(child_name(region.parent, region.slot));
+    static_cast<void>(finish());
+  }
+
+  /// Keeps the nearest child only, from a pair on: finds a witness, and no bound.
+  Witness dive(const image::Region& region, std::uint32_t seed) noexcept {
+    greedy_ = true;
+    push({child_name(region.parent, region.slot), seed, 0});
+    return finish().best;
+  }
+
+ private:
+  Bounds finish() noexcept {
+    while (size_ > 0 || pending_ > 0) {
+      if (!pace_.go_on()) return interrupted();
+      if (size_ == 0) {
+        flush();
+        continue;
+      }
+      const Candidate top = scratch_.stack[--size_];
+      if (top.squared < threshold_squared_) descend(top);
+    }
+    out_.lower = proved(passed_over());
+    return out_;
+  }
+
+  /// The root of b against a region: the one pair whose second box is not stored.
+  void visit_root(std::uint32_t a) noexcept {
+    const Box box = box_of(frame_.a->region_nodes[node_of(a)], slot_of(a));
+    keep_children_of_b(a, 0, false,
+                       expand(box, frame_.a_to_b, frame_.b->region_nodes[0], frame_.scale2_b));
+  }
+
+  void descend(const Candidate& pair) noexcept {
+    const RegionNode& over_a = frame_.a->region_nodes[node_of(pair.a)];
+    const RegionNode& over_b = frame_.b->region_nodes[node_of(pair.b)];
+    const std::uint32_t slot_a = slot_of(pair.a);
+    const std::uint32_t slot_b = slot_of(pair.b);
+    const bool split_a =
+        over_a.leaf == 0 && (over_b.leaf != 0 || frame_.scale2_a * size2_of(over_a, slot_a) >
+                                                     frame_.scale2_b * size2_of(over_b, slot_b));
+    if (split_a) {
+      const std::uint32_t node = over_a.first + slot_a;
+      const std::uint32_t near = expand(box_of(over_b, slot_b), frame_.b_to_a,
+                                        frame_.a->region_nodes[node], frame_.scale2_a);
+      keep_children_of_a(node, pair.b, over_b.leaf != 0, near);
+    } else {
+      const std::uint32_t node = over_b.first + slot_b;
+      const std::uint32_t near = expand(box_of(over_a, slot_a), frame_.a_to_b,
+                                        frame_.b->region_nodes[node], frame_.scale2_b);
+      keep_children_of_b(pair.a, node, over_a.leaf != 0, near);
+    }
+  }
+
+  /// One box against the children of a node; leaves their bounds in squared_.
+  /// @return the children that may hold something nearer
+  std::uint32_t expand(const Box& box, const Transform& to_node, const RegionNode& node,
+                       float scale2) noexcept {
+    pace_.charge(1);
+    const std::uint32_t children = children_of(node);
+    const std::uint32_t near =
+        children & kernels_.test_boxes(box, to_node, node, threshold_squared_ / scale2, squared_);
+    if (best_squared_ >= limit_ * limit_) note_passed_over(children & ~near, scale2);
+    return near;
+  }
+
+  /// Only while nothing within the limit is known does it matter how far what is passed over is:
+  /// a region that is far rests for as long.
+  void note_passed_over(std::uint32_t children, float scale2) noexcept {
+    for (; children != 0; children &= children - 1) {
+      const float squared = squared_[__builtin_ctz(children)] * scale2;
+      passed_squared_ = squared < passed_squared_ ? squared : passed_squared_;
+    }
+  }
+
+  void keep_children_of_a(std::uint32_t node, std::uint32_t b, bool b_is_triangle,
+                          std::uint32_t near) noexcept {
+    const RegionNode& parent = frame_.a->region_nodes[node];
+    const bool pairs = parent.leaf != 0 && b_is_triangle;
+    const std::uint32_t bottom = size_;
+    for (; near != 0; near &= near - 1) {
+      const auto slot = static_cast<std::uint32_t>(__builtin_ctz(near));
+      const float squared = squared_[slot] * frame_.scale2_a;
+      if (pairs) {
+        add_pair(parent.first + slot, triangle_of(*frame_.b, b), squared);
+      } else {
+        push({child_name(node, slot), b, squared});
+      }
+    }
+    nearest_to_top(bottom);
+  }
+
+  void keep_children_of_b(std::uint32_t a, std::uint32_t node, bool a_is_triangle,
+                          std::uint32_t near) noexcept {
+    const RegionNode& parent = frame_.b->region_nodes[node];
+    const bool pairs = parent.leaf != 0 && a_is_triangle;
+    const std::uint32_t bottom = size_;
+    for (; near != 0; near &= near - 1) {
+      const auto slot = static_cast<std::uint32_t>(__builtin_ctz(near));
+      const float squared = squared_[slot] * frame_.scale2_b;
+      if (pairs) {
+        add_pair(triangle_of(*frame_.a, a), parent.first + slot, squared);
+      } else {
+        push({a, child_name(node, slot), squared});
+      }
+    }
+    nearest_to_top(bottom);
+  }
+
+  /// Of the candidates from `bottom` on. The order of the others does not matter: once something
+  /// near has been found, all that are left have to be looked at.
+  void nearest_to_top(std::uint32_t bottom) noexcept {
+    if (size_ <= bottom + 1) return;
+    std::uint32_t nearest = bottom;
+    for (std::uint32_t i = bottom + 1; i < size_; ++i) {
+      nearest = scratch_.stack[i].squared < scratch_.stack[nearest].squared ? i : nearest;
+    }
+    const Candidate top = scratch_.stack[nearest];
+    scratch_.stack[nearest] = scratch_.stack[size_ - 1];
+    scratch_.stack[size_ - 1] = top;
+    if (!greedy_) return;
+    scratch_.stack[bottom] = top;
+    size_ = bottom + 1;
+  }
+
+  static std::uint32_t triangle_of(const ImageView& image, std::uint32_t name) noexcept {
+    return image.region_nodes[node_of(name)].first + slot_of(name);
+  }
+
+  void push(const Candidate& c) noexcept {
+    PALPATE_ASSERT(size_ < kMaxCandidates);
+    scratch_.stack[size_++] = c;
+  }
+
+  void add_pair(std::uint32_t a, std::uint32_t b, float squared) noexcept {
+    if (pending_ == kBatch) flush();
+    scratch_.batch_a[pending_] = a;
+    scratch_.batch_b[pending_] = b;
+    scratch_.batch_squared[pending_] = squared;
+    ++pending_;
+  }
+
+  void flush() noexcept {
+    for (std::uint32_t i = pending_; i < kBatch; ++i) {
+      scratch_.batch_a[i] = scratch_.batch_a[0];
+      scratch_.batch_b[i] = scratch_.batch_b[0];
+    }
+    pace_.charge(kBatchUnits);
+    float squared[kBatch];
+    const std::uint32_t crossing = evaluate(kernels_, frame_, scratch_, squared);
+    if (crossings_ != nullptr) {
+      note_crossings(crossing);
+      pending_ = 0;
+      return;
+    }
+    std::uint32_t nearest = 0;
+    for (std::uint32_t i = 1; i < pending_; ++i)
+      nearest = squared[i] < squared[nearest] ? i : nearest;
+    pending_ = 0;
+    if (squared[nearest] >= best_squared_) return;
+    best_squared_ = squared[nearest];
+    out_.best = {scratch_.batch_a[nearest], scratch_.batch_b[nearest], sqrt_of(best_squared_)};
+    lower_threshold();
+  }
+
+  void note_crossings(std::uint32_t crossing) noexcept {
+    for (std::uint32_t left = crossing & ((1u << pending_) - 1u); left != 0; left &= left - 1) {
+      const int i = __builtin_ctz(left);
+      note_crossing(frame_, scratch_.batch_a[i], scratch_.batch_b[i], *crossings_);
+    }
+    if (crossings_->count == kMaxCrossings) size_ = 0;  // nothing more can be kept
+  }
+
+  void lower_threshold() noexcept {
+    const float best =
+        out_.best.known() && out_.best.distance < limit_ ? out_.best.distance : limit_;
+    const float threshold = best - tolerance_;
+    threshold_ = threshold > 0 ? threshold : 0;
+    threshold_squared_ = threshold_ * threshold_;
+  }
+
+  /// Everything that was passed over is at least this far.
+  float passed_over() const noexcept {
+    if (best_squared_ < limit_ * limit_) return threshold_;
+    const float passed = sqrt_of(passed_squared_);
+    return passed < out_.best.distance || !out_.best.known() ? passed : out_.best.distance;
+  }
+
+  static float proved(float bound) noexcept { return bound > kRounding ? bound - kRounding : 0; }
+
+  Bounds interrupted() noexcept {
+    float least = threshold_squared_;
+    for (std::uint32_t i = 0; i < size_; ++i) {
+      least = scratch_.stack[i].squared < least ? scratch_.stack[i].squared : least;
+    }
+    for (std::uint32_t i = 0; i < pending_; ++i) {
+      least = scratch_.batch_squared[i] < least ? scratch_.batch_squared[i] : least;
+    }
+    out_.lower = proved(sqrt_of(least));
+    out_.complete = false;
+    return out_;
+  }
+
+  const Kernels& kernels_;
+  const PairFrame& frame_;
+  SearchScratch& scratch_;
+  Pace& pace_;
+  float limit_;
+  float tolerance_;
+  Bounds out_;
+  float best_squared_ = kFar;
+  float threshold_ = 0;
+  float threshold_squared_ = 0;
+  float passed_squared_ = kFar;
+  float squared_[kBatch];  // of the children looked at last, in their image's unit
+  std::uint32_t size_ = 0;
+  std::uint32_t pending_ = 0;
+  bool greedy_ = false;
+  CrossingList* crossings_ = nullptr;
+};
+
+std::uint32_t neighbour(const ImageView& image, std::uint32_t triangle, std::uint32_t i) noexcept {
+  const std::uint32_t n = image.region_triangles[triangle].neighbours[i];
+  return n == image::kNone ? triangle : n;
+}
+
+/// Itself and its neighbours within its region.
+void around_a(const ImageView& image, std::uint32_t t, std::uint32_t (&out)[4]) noexcept {
+  out[0] = t;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const std::uint32_t n = neighbour(image, t, i);
+    const bool same = image.region_triangles[n].region == image.region_triangles[t].region;
+    out[i + 1] = same ? n : t;
+  }
+}
+
+void around_b(const ImageView& image, std::uint32_t t, std::uint32_t (&out)[4]) noexcept {
+  out[0] = t;
+  for (std::uint32_t i = 0; i < 3; ++i) out[i + 1] = neighbour(image, t, i);
+}
+
+}  // namespace
+
+void measure(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+             Witness* const (&witnesses)[kBatch], std::uint32_t count) noexcept {
+  PALPATE_ASSERT(count > 0 && count <= kBatch);
+  for (std::uint32_t i = 0; i < kBatch; ++i) {
+    const Witness& w = *witnesses[i < count ? i : 0];
+    scratch.batch_a[i] = w.a;
+    scratch.batch_b[i] = w.b;
+  }
+  pace.charge(kBatchUnits);
+  float squared[kBatch];
+  evaluate(kernels, frame, scratch, squared);
+  for (std::uint32_t i = 0; i < count; ++i) witnesses[i]->distance = sqrt_of(squared[i]);
+}
+
+void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+           Witness& witness) noexcept {
+  for (std::uint32_t step = 0; step < kMaxClimb && pace.go_on(); ++step) {
+    std::uint32_t of_a[4];
+    std::uint32_t of_b[4];
+    around_a(*frame.a, witness.a, of_a);
+    around_b(*frame.b, witness.b, of_b);
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      scratch.batch_a[i] = of_a[i / 4];
+      scratch.batch_b[i] = of_b[i % 4];
+    }
+    pace.charge(kBatchUnits);
+    float squared[kBatch];
+    evaluate(kernels, frame, scratch, squared);
+    std::uint32_t nearest = 0;  // the witness itself
+    for (std::uint32_t i = 1; i < kBatch; ++i)
+      nearest = squared[i] < squared[nearest] ? i : nearest;
+    witness = {scratch.batch_a[nearest], scratch.batch_b[nearest], sqrt_of(squared[nearest])};
+    if (nearest == 0) return;
+  }
+}
+
+Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+              std::uint32_t region, const Witness& witness, float limit, float tolerance) noexcept {
+  return Search(kernels, frame, scratch, pace, witness, limit, tolerance)
+      .run(frame.a->regions[region]);
+}
+
+void note_crossing(const PairFrame& frame, std::uint32_t triangle_a, std::uint32_t triangle_b,
+                   CrossingList& list) noexcept {
+  const std::uint32_t a = frame.a->region_triangles[triangle_a].piece;
+  const std::uint32_t b = frame.b->region_triangles[triangle_b].piece;
+  for (std::uint32_t i = 0; i < list.count; ++i) {
+    if (list.piece_a[i] == a && list.piece_b[i] == b) return;
+  }
+  if (list.count == kMaxCrossings) return;
+  list.piece_a[list.count] = a;
+  list.piece_b[list.count++] = b;
+}
+
+void find_crossings(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
+                    Pace& pace, std::uint32_t region, CrossingList& list) noexcept {
+  Search(kernels, frame, scratch, pace, {}, kRounding, 0).collect(frame.a->regions[region], list);
+}
+
+Witness dive(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+             std::uint32_t region, std::uint32_t seed) noexcept {
+  return Search(kernels, frame, scratch, pace, {}, kFarthest, 0)
+      .dive(frame.a->regions[region], seed);
+}
+
+}  // namespace palpate::regions

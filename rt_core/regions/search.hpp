@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// The least distance of one region of a from the whole of b, or bounds of it.
+#pragma once
+
+#include <cstdint>
+
+#include "rt_core/base/meter.hpp"
+#include "rt_core/regions/kernels.hpp"
+#include "rt_core/regions/pair_frame.hpp"
+
+namespace palpate::regions {
+
+/// Work units of one batch of triangle pairs; one box against the boxes of a node is one unit.
+inline constexpr std::uint64_t kBatchUnits = 8;
+/// The clock is read after this many units.
+inline constexpr std::uint64_t kUnitsPerReading = 32;
+
+/// A pair of triangles and its distance.
+struct Witness {
+  std::uint32_t a = image::kNone;  ///< into a's region_triangles
+  std::uint32_t b = image::kNone;
+  float distance = 0;  ///< in units; meaningless without triangles
+  [[nodiscard]] bool known() const noexcept { return a != image::kNone; }
+};
+
+/// Bounds of a region's distance. `best` is an upper bound where known.
+struct Bounds {
+  Witness best;
+  float lower = 0;       ///< proved, rounding subtracted; >= 0
+  bool complete = true;  ///< false: the budget ended the search
+};
+
+/// Two children (pair_frame.hpp) that may hold something nearer.
+struct Candidate {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  float squared = 0;  ///< bound, in units
+};
+
+/// Depth first: each of two trees is descended at most kMaxRegionDepth times, each time leaving at
+/// most all children but one behind.
+inline constexpr std::uint32_t kMaxCandidates =
+    2 * image::kMaxRegionDepth * image::kRegionWidth + 1;
+
+/// Working memory of one search at a time; needs no initialisation.
+struct SearchScratch {
+  KernelScratch kernel;
+  Candidate stack[kMaxCandidates];
+  std::uint32_t batch_a[kBatch];
+  std::uint32_t batch_b[kBatch];
+  float batch_squared[kBatch];
+};
+
+/// When a search has to end.
+class Pace {
+ public:
+  explicit Pace(Meter& meter) noexcept : meter_(meter) {}
+  void charge(std::uint64_t units) noexcept { meter_.charge(units); }
+  /// False from the moment at which the budget is used up.
+  [[nodiscard]] bool go_on() noexcept {
+    if (units_ended_ || time_ended_) return false;
+    units_ended_ = meter_.out_of_units();
+    if (meter_.used() >= next_reading_) {
+      next_reading_ = meter_.used() + kUnitsPerReading;
+      time_ended_ = meter_.out_of_time();
+    }
+    return !units_ended_ && !time_ended_;
+  }
+  [[nodiscard]] bool units_ended() const noexcept { return units_ended_; }
+  [[nodiscard]] bool time_ended() const noexcept { return time_ended_; }
+  [[nodiscard]] std::uint64_t used() const noexcept { return meter_.used(); }
+
+ private:
+  Meter& meter_;
+  std::uint64_t next_reading_ = 0;
+  bool units_ended_ = false;
+  bool time_ended_ = false;
+};
+
+/// Distances of witnesses at the present poses, sixteen at a time.
+/// @param witnesses  [count], count <= kBatch, all known; distances are set
+void measure(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+             Witness* const (&witnesses)[kBatch], std::uint32_t count) noexcept;
+
+/// Goes from a witness to a neighbour of either triangle, or of both, while that is nearer; within
+/// the witness's region of a. At most kMaxClimb batches.
+inline constexpr std::uint32_t kMaxClimb = 8;
+void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+           Witness& witness) noexcept;
+
+/// Depth-first search of both trees, nearest child first: what is not nearer than
+/// min(best, limit) - tolerance is passed over.
+///
+/// @param region     of a
+/// @param witness    the best known; its distance at the present poses
+/// @param limit      distances from here on are of no interest
+/// @param tolerance  by how much the lower bound may stay below the least distance
+/// Complete: the true least distance d has lower <= d, lower >= min(best, limit) - tolerance -
+/// kRounding, and d <= best. Interrupted: lower and best still hold.
+/// Cost: the budget, or all pairs of boxes nearer than the answer. No allocation, no recursion.
+Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+              std::uint32_t region, const Witness& witness, float limit, float tolerance) noexcept;
+
+/// Pairs of pieces (level 0) whose triangles cross, each once; more than fit are left out.
+inline constexpr std::uint32_t kMaxCrossings = 16;
+struct CrossingList {
+  std::uint32_t count = 0;
+  std::uint32_t piece_a[kMaxCrossings] = {};
+  std::uint32_t piece_b[kMaxCrossings] = {};
+};
+void note_crossing(const PairFrame& frame, std::uint32_t triangle_a, std::uint32_t triangle_b,
+                   CrossingList& list) noexcept;
+
+/// Adds the pairs of pieces whose triangles cross in a region, until the list is full or the budget
+/// is used up. Boxes of crossing triangles overlap, so that none is passed over.
+void find_crossings(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
+                    Pace& pace, std::uint32_t region, CrossingList& list) noexcept;
+
+/// A witness of a region by going to the nearest child of both trees, one path only.
+/// @param seed  a child of b to start from
+/// Unknown where the budget ended it. Cost: kMaxRegionDepth boxes of each tree and two batches.
+Witness dive(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+             std::uint32_t region, std::uint32_t seed) noexcept;
+
+}  // namespace palpate::regions

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lanes of floats, as wide as the translation unit's target allows. Private to the kernels.
+//
+// GCC's and Clang's vector types instead of a library: every operation is IEEE, lane by lane, in
+// the order in which it is written, so that 4, 8 and 16 lanes give the same bits, and a target
+// without vectors gets plain floats from the same source. All of it is in an unnamed namespace:
+// the kernels are compiled several times with different instruction sets, and no function of one
+// may be linked into another.
+#pragma once
+
+#include <cstdint>
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
+namespace palpate::regions {
+namespace {
+
+#if defined(__AVX512F__)
+inline constexpr int kLanes = 16;
+#elif defined(__AVX2__)
+inline constexpr int kLanes = 8;
+#else
+inline constexpr int kLanes = 4;
+#endif
+
+using Floats = float __attribute__((vector_size(sizeof(float) * kLanes)));
+using Ints = std::int32_t __attribute__((vector_size(sizeof(std::int32_t) * kLanes)));
+
+#define PALPATE_LANES [[gnu::always_inline]] inline
+
+PALPATE_LANES Floats load(const float* from) noexcept {
+  Floats v;
+  __builtin_memcpy(&v, from, sizeof v);
+  return v;
+}
+PALPATE_LANES void store(Floats v, float* to) noexcept { __builtin_memcpy(to, &v, sizeof v); }
+PALPATE_LANES Floats all(float v) noexcept { return v - Floats{}; }
+
+/// Second operand where the comparison is false, NaN included.
+PALPATE_LANES Floats least(Floats a, Floats b) noexcept { return a < b ? a : b; }
+PALPATE_LANES Floats most(Floats a, Floats b) noexcept { return a > b ? a : b; }
+PALPATE_LANES Floats magnitude(Floats v) noexcept {
+  return reinterpret_cast<Floats>(reinterpret_cast<Ints>(v) & 0x7fffffff);
+}
+PALPATE_LANES Floats clamp01(Floats v) noexcept { return least(most(v, Floats{}), all(1.0f)); }
+
+/// Bit i set where lane i of the mask is.
+PALPATE_LANES std::uint32_t bits(Ints mask) noexcept {
+#if defined(__AVX512F__)
+  return _mm512_movepi32_mask(reinterpret_cast<__m512i>(mask));
+#elif defined(__AVX2__)
+  return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
+#else
+  std::uint32_t out = 0;
+  for (int i = 0; i < kLanes; ++i) out |= (static_cast<std::uint32_t>(mask[i]) >> 31) << i;
+  return out;
+#endif
+}
+
+/// Three-vectors, lane by lane.
+struct Vectors {
+  Floats x, y, z;
+};
+PALPATE_LANES Vectors operator+(Vectors a, Vectors b) noexcept {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+PALPATE_LANES Vectors operator-(Vectors a, Vectors b) noexcept {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+PALPATE_LANES Vectors operator*(Floats s, Vectors a) noexcept {
+  return {s * a.x, s * a.y, s * a.z};
+}
+PALPATE_LANES Floats dot(Vectors a, Vectors b) noexcept {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+PALPATE_LANES Vectors cross(Vectors a, Vectors b) noexcept {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+PALPATE_LANES Vectors select(Ints mask, Vectors a, Vectors b) noexcept {
+  return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
+}
+
+}  // namespace
+}  // namespace palpate::regions

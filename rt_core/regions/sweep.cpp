@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/sweep.hpp"
+
+#include <limits>
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/regions/named_box.hpp"
+
+namespace palpate::regions {
+namespace {
+
+using image::RegionNode;
+
+class Sweep {
+ public:
+  Sweep(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+        float limit, std::span<Swept> out) noexcept
+      : kernels_(kernels),
+        frame_(frame),
+        scratch_(scratch),
+        pace_(pace),
+        limit_squared_(limit * limit),
+        out_(out) {}
+
+  void run() noexcept {
+    for (Swept& s : out_) s = {std::numeric_limits<float>::max(), image::kNone};
+    const RegionNode& root = frame_.a->region_nodes[0];
+    for (std::uint32_t slot = 0; slot < root.children; ++slot) split_b(child_name(0, slot), 0);
+    while (size_ > 0) {
+      const Candidate top = scratch_.stack[--size_];
+      if (pace_.go_on()) {
+        descend(top);
+      } else {
+        note(top);
+      }
+    }
+  }
+
+ private:
+  /// Children of a are nodes here: nothing below regions is looked at.
+  const RegionNode& node_below_a(std::uint32_t a) const noexcept {
+    return frame_.a->region_nodes[frame_.a->region_nodes[node_of(a)].first + slot_of(a)];
+  }
+
+  void descend(const Candidate& pair) noexcept {
+    const RegionNode& over_a = frame_.a->region_nodes[node_of(pair.a)];
+    const RegionNode& over_b = frame_.b->region_nodes[node_of(pair.b)];
+    const bool a_larger = frame_.scale2_a * size2_of(over_a, slot_of(pair.a)) >=
+                          frame_.scale2_b * size2_of(over_b, slot_of(pair.b));
+    const bool whole_b = over_b.leaf != 0 || a_larger;
+    if (!whole_b) {
+      split_b(pair.a, over_b.first + slot_of(pair.b));
+    } else if (node_below_a(pair.a).region != image::kNone) {
+      note(pair);
+    } else {
+      split_a(over_a.first + slot_of(pair.a), pair.b);
+    }
+  }
+
+  void split_a(std::uint32_t node, std::uint32_t b) noexcept {
+    const RegionNode& over_b = frame_.b->region_nodes[node_of(b)];
+    const RegionNode& parent = frame_.a->region_nodes[node];
+    float squared[kBatch];
+    const std::uint32_t near =
+        test(box_of(over_b, slot_of(b)), frame_.b_to_a, parent, frame_.scale2_a, squared);
+    for (std::uint32_t i = 0; i < parent.children; ++i) {
+      const Candidate child = {child_name(node, i), b, squared[i] * frame_.scale2_a};
+      if ((near >> i & 1u) != 0) {
+        push(child);
+      } else {
+        cover(child.a, child.squared);
+      }
+    }
+  }
+
+  void split_b(std::uint32_t a, std::uint32_t node) noexcept {
+    const RegionNode& over_a = frame_.a->region_nodes[node_of(a)];
+    const RegionNode& parent = frame_.b->region_nodes[node];
+    float squared[kBatch];
+    const std::uint32_t near =
+        test(box_of(over_a, slot_of(a)), frame_.a_to_b, parent, frame_.scale2_b, squared);
+    float far = std::numeric_limits<float>::max();
+    for (std::uint32_t i = 0; i < parent.children; ++i) {
+      const float s = squared[i] * frame_.scale2_b;
+      if ((near >> i & 1u) != 0) {
+        push({a, child_name(node, i), s});
+      } else {
+        far = s < far ? s : far;
+      }
+    }
+    cover(a, far);
+  }
+
+  std::uint32_t test(const Box& box, const Transform& to_node, const RegionNode& node, float scale2,
+                     float (&out)[kBatch]) noexcept {
+    pace_.charge(1);
+    return children_of(node) &
+           kernels_.test_boxes(box, to_node, node, limit_squared_ / scale2, out);
+  }
+
+  void push(const Candidate& c) noexcept {
+    PALPATE_ASSERT(size_ < kMaxCandidates);
+    scratch_.stack[size_++] = c;
+  }
+
+  /// A part of b that is `squared` or more from everything below a child of a.
+  void cover(std::uint32_t a, float squared) noexcept {
+    const RegionNode& below = node_below_a(a);
+    for (Swept& s : out_.subspan(below.first_region, below.regions)) {
+      s.squared = squared < s.squared ? squared : s.squared;
+    }
+  }
+
+  void note(const Candidate& pair) noexcept {
+    const RegionNode& below = node_below_a(pair.a);
+    for (Swept& s : out_.subspan(below.first_region, below.regions)) {
+      if (pair.squared < s.squared || s.seed == image::kNone) s.seed = pair.b;
+      s.squared = pair.squared < s.squared ? pair.squared : s.squared;
+    }
+  }
+
+  const Kernels& kernels_;
+  const PairFrame& frame_;
+  SearchScratch& scratch_;
+  Pace& pace_;
+  float limit_squared_;
+  std::span<Swept> out_;
+  std::uint32_t size_ = 0;
+};
+
+}  // namespace
+
+void sweep(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+           float limit, std::span<Swept> out) noexcept {
+  Sweep(kernels, frame, scratch, pace, limit, out).run();
+}
+
+}  // namespace palpate::regions

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sixteen pairs of triangles at once, without branches. Private to the kernels.
+//
+// The least of the ways a distance can be met: two edges, a corner above the other face, an edge
+// that pierces the other face. Parameters on edges are found from cross products, whose relative
+// error grows with 1 / sine and not with its square, so that nearly parallel edges cost no
+// accuracy: a wrong parameter then moves the result by the rounding of the coordinates only.
+#pragma once
+
+#include <limits>
+#include <new>
+
+#include "rt_core/regions/kernels.hpp"
+#include "rt_core/regions/simd.hpp"
+
+namespace palpate::regions {
+namespace {
+
+/// Edges whose squared sine is less are taken as parallel: then a corner is as near.
+inline constexpr float kParallel = 1e-12f;
+/// Coordinates relative to the pair are stretched by this power of two, so that products of tiny
+/// triangles' areas stay in the range of float.
+inline constexpr float kStretch = 1024.0f;
+
+struct Triangles {
+  Vectors corner[3];
+  Vectors edge[3];  ///< from corner i to i + 1
+  Floats edge_squared[3];
+  Floats edge_inverse[3];  ///< 1 / edge_squared; 0 for a point
+  Vectors normal;
+  Floats normal_inverse;  ///< 1 / |normal|^2; 0 for a segment
+  Vectors inward[3];      ///< in the plane, from edge i to the inside
+};
+
+PALPATE_LANES Floats inverse(Floats v) noexcept {
+  const Floats positive = v > Floats{} ? v : all(1.0f);
+  return v > Floats{} ? all(1.0f) / positive : Floats{};
+}
+
+PALPATE_LANES void complete(Triangles& t) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    t.edge[i] = t.corner[(i + 1) % 3] - t.corner[i];
+    t.edge_squared[i] = dot(t.edge[i], t.edge[i]);
+    t.edge_inverse[i] = inverse(t.edge_squared[i]);
+  }
+  t.normal = cross(t.edge[0], t.edge[1]);
+  t.normal_inverse = inverse(dot(t.normal, t.normal));
+  for (int i = 0; i < 3; ++i) t.inward[i] = cross(t.normal, t.edge[i]);
+}
+
+/// The nearest so far; points only where they are asked for.
+struct Closest {
+  Floats squared;
+  Vectors on_a;
+  Vectors apart;
+};
+
+template <bool kPoints>
+PALPATE_LANES void keep(Closest& best, Floats squared, Vectors on_a, Vectors apart) noexcept {
+  if constexpr (kPoints) {
+    const Ints nearer = squared < best.squared;
+    best.on_a = select(nearer, on_a, best.on_a);
+    best.apart = select(nearer, apart, best.apart);
+  }
+  best.squared = least(squared, best.squared);
+}
+
+template <bool kPoints>
+PALPATE_LANES void edge_and_edge(const Triangles& a, int i, const Triangles& b, int k,
+                                 Closest& best) noexcept {
+  const Vectors u = a.edge[i];
+  const Vectors v = b.edge[k];
+  const Vectors r = a.corner[i] - b.corner[k];
+  const Vectors across = cross(u, v);
+  const Floats across2 = dot(across, across);
+  const Ints skew = across2 > kParallel * (a.edge_squared[i] * b.edge_squared[k]);
+  const Floats along = dot(cross(v, r), across) / (skew ? across2 : all(1.0f));
+  const Floats uv = dot(u, v);
+  Floats s = skew ? clamp01(along) : Floats{};
+  const Floats t = clamp01((uv * s + dot(v, r)) * b.edge_inverse[k]);
+  s = clamp01((uv * t - dot(u, r)) * a.edge_inverse[i]);
+  const Vectors apart = r + s * u - t * v;
+  keep<kPoints>(best, dot(apart, apart), a.corner[i] + s * u, apart);
+}
+
+/// The corners of `corners` against the face of `face`: heights and sides, and the nearest where a
+/// corner is above the face's inside.
+struct Heights {
+  Floats height[3];   ///< of each corner above the face's plane, times |normal|
+  Floats side[3][3];  ///< [corner][edge] >= 0: inside of that edge, times |normal| |edge|
+};
+
+PALPATE_LANES Heights heights_of(const Triangles& corners, const Triangles& face) noexcept {
+  Heights h;
+  for (int c = 0; c < 3; ++c) {
+    for (int e = 0; e < 3; ++e) {
+      h.side[c][e] = dot(face.inward[e], corners.corner[c] - face.corner[e]);
+    }
+    h.height[c] = dot(face.normal, corners.corner[c] - face.corner[0]);
+  }
+  return h;
+}
+
+template <bool kPoints, bool kCornersOfA>
+PALPATE_LANES void corners_and_face(const Triangles& corners, const Triangles& face,
+                                    const Heights& h, Closest& best) noexcept {
+  const Floats none = all(std::numeric_limits<float>::max());
+  for (int c = 0; c < 3; ++c) {
+    const Floats innermost = least(h.side[c][0], least(h.side[c][1], h.side[c][2]));
+    const Ints above = (innermost >= Floats{}) & (face.normal_inverse > Floats{});
+    const Floats share = h.height[c] * face.normal_inverse;
+    const Floats squared = above ? h.height[c] * share : none;
+    const Vectors up = share * face.normal;
+    if constexpr (kCornersOfA) {
+      keep<kPoints>(best, squared, corners.corner[c], up);
+    } else {
+      keep<kPoints>(best, squared, corners.corner[c] - up, Vectors{-up.x, -up.y, -up.z});
+    }
+  }
+}
+
+/// Lanes where an edge of the triangle whose heights are given passes through the face.
+PALPATE_LANES Ints piercing(const Heights& h) noexcept {
+  Ints any = {};
+  for (int c = 0; c < 3; ++c) {
+    const int d = (c + 1) % 3;
+    const Ints up = h.height[c] > Floats{};
+    const Ints through =
+        up ? h.height[d] < Floats{} : (h.height[d] > Floats{}) & (h.height[c] < Floats{});
+    Floats innermost = all(std::numeric_limits<float>::max());
+    for (int e = 0; e < 3; ++e) {
+      const Floats at = h.side[d][e] * h.height[c] - h.side[c][e] * h.height[d];
+      innermost = least(up ? at : -at, innermost);
+    }
+    any |= through & (innermost >= Floats{});
+  }
+  return any;
+}
+
+/// What one pass over the lanes works on. Too large for the stack.
+struct Work {
+  Triangles a;
+  Triangles b;
+  Heights of_a;  ///< of a's corners above b
+  Heights of_b;
+  Closest best;
+};
+static_assert(sizeof(Work) <= sizeof(KernelScratch::rows));
+
+Work& work_in(KernelScratch& scratch) noexcept { return *::new (scratch.rows) Work; }
+
+// The stages are functions of their own, so that none has more values at hand than registers and a
+// small frame can hold.
+
+[[gnu::noinline]] void complete_both(Work& w) noexcept {
+  complete(w.a);
+  complete(w.b);
+  w.best = {all(std::numeric_limits<float>::max()), Vectors{}, Vectors{}};
+}
+
+template <bool kPoints>
+[[gnu::noinline]] void edges(Work& w) noexcept {
+  Closest best = w.best;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) edge_and_edge<kPoints>(w.a, i, w.b, k, best);
+  }
+  w.best = best;
+}
+
+template <bool kPoints>
+[[gnu::noinline]] void corners(Work& w) noexcept {
+  w.of_a = heights_of(w.a, w.b);
+  corners_and_face<kPoints, true>(w.a, w.b, w.of_a, w.best);
+  w.of_b = heights_of(w.b, w.a);
+  corners_and_face<kPoints, false>(w.b, w.a, w.of_b, w.best);
+}
+
+/// @return lanes that cross
+template <bool kPoints>
+PALPATE_LANES Ints closest(Work& w) noexcept {
+  complete_both(w);
+  edges<kPoints>(w);
+  corners<kPoints>(w);
+  return piercing(w.of_a) | piercing(w.of_b);
+}
+
+/// Corners of sixteen triangles, component by component.
+PALPATE_LANES void gather(const image::RegionTriangle* const (&from)[kBatch],
+                          float (&out)[9][kBatch]) noexcept {
+  for (std::uint32_t i = 0; i < kBatch; ++i) {
+    for (int c = 0; c < 9; ++c) out[c][i] = from[i]->corners[c];
+  }
+}
+
+PALPATE_LANES Vectors corner(const float (&lanes)[9][kBatch], int which, int lane) noexcept {
+  return {load(lanes[3 * which] + lane), load(lanes[3 * which + 1] + lane),
+          load(lanes[3 * which + 2] + lane)};
+}
+
+PALPATE_LANES Vectors mapped(Vectors p, const Transform& map) noexcept {
+  const Vectors s = all(map.scale) * p;
+  const float* r = map.rotation;
+  return {r[0] * s.x + r[1] * s.y + r[2] * s.z + map.translation[0],
+          r[3] * s.x + r[4] * s.y + r[5] * s.z + map.translation[1],
+          r[6] * s.x + r[7] * s.y + r[8] * s.z + map.translation[2]};
+}
+
+std::uint32_t triangle_distances(const image::RegionTriangle* const (&a)[kBatch],
+                                 const image::RegionTriangle* const (&b)[kBatch],
+                                 const Transform& a_to_b, KernelScratch& scratch,
+                                 float (&out_squared)[kBatch]) noexcept {
+  Work& work = work_in(scratch);
+  TriangleLanes& lanes = scratch.lanes;
+  gather(a, lanes.a);
+  gather(b, lanes.b);
+  std::uint32_t crossing = 0;
+  for (int lane = 0; lane < static_cast<int>(kBatch); lane += kLanes) {
+    const Vectors origin = corner(lanes.b, 0, lane);
+    for (int i = 0; i < 3; ++i) {
+      work.a.corner[i] = all(kStretch) * (mapped(corner(lanes.a, i, lane), a_to_b) - origin);
+      work.b.corner[i] = all(kStretch) * (corner(lanes.b, i, lane) - origin);
+    }
+    const Ints cross = closest<false>(work);
+    const Floats squared = work.best.squared * (1.0f / (kStretch * kStretch));
+    store(cross ? Floats{} : squared, out_squared + lane);
+    crossing |= bits(cross) << lane;
+  }
+  return crossing;
+}
+
+PALPATE_LANES void store_vectors(Vectors v, float (&out)[3][kBatch], int lane) noexcept {
+  const Floats shrink = all(1.0f / kStretch);
+  store(v.x * shrink, out[0] + lane);
+  store(v.y * shrink, out[1] + lane);
+  store(v.z * shrink, out[2] + lane);
+}
+
+void witnesses(KernelScratch& scratch, WitnessLanes& out) noexcept {
+  Work& work = work_in(scratch);
+  const TriangleLanes& lanes = scratch.lanes;
+  out.crossing = 0;
+  for (int lane = 0; lane < static_cast<int>(kBatch); lane += kLanes) {
+    for (int i = 0; i < 3; ++i) {
+      work.a.corner[i] = all(kStretch) * corner(lanes.a, i, lane);
+      work.b.corner[i] = all(kStretch) * corner(lanes.b, i, lane);
+    }
+    out.crossing |= bits(closest<true>(work)) << lane;
+    store_vectors(work.best.on_a, out.on_a, lane);
+    store_vectors(work.best.apart, out.apart, lane);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::regions

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The region engine inside budgets: the certificate holds, nothing is lost, results repeat, memory
+// stays alone.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "tests/support/brute_force.hpp"
+#include "tests/support/shapes.hpp"
+#include "tools/realtime/thread_counters.hpp"
+
+namespace palpate::test {
+namespace {
+
+/// Slides, and jumps every so often.
+Pose motion(int i) {
+  const double jump = i % 25 == 24 ? 0.4 : 0;
+  return {{1.75 + 0.02 * std::sin(0.2 * i), 0.3 * std::sin(0.03 * i) + jump, 0.004 * i},
+          turn({0.01 * i, 0.004 * i, 0})};
+}
+
+struct Bodies {
+  BakedBody a{bumpy_ball(20, 28, 1), bake::ForEngine::regions};
+  BakedBody b{bumpy_ball(16, 16, 0.8), bake::ForEngine::regions};
+};
+
+const Bodies& bodies() {
+  static const Bodies both;
+  return both;
+}
+
+constexpr double kDelta = 0.05;
+constexpr int kTicks = 60;
+const Settings kSettings{
+    .engine = EngineKind::regions, .delta_m = kDelta, .exact = true, .cluster_radius_m = 0.1};
+
+BakedScene scene_with(const Settings& settings, const Limits& limits = {}) {
+  return {{bodies().a.view, bodies().b.view}, {{0, 1}}, settings, limits};
+}
+
+const std::vector<double>& truth() {
+  static const std::vector<double> all = [] {
+    const PlacedTriangles fixed(bodies().b.mesh, {});
+    std::vector<double> out;
+    for (int i = 0; i < kTicks; ++i)
+      out.push_back(distance_of(PlacedTriangles(bodies().a.mesh, motion(i)), fixed));
+    return out;
+  }();
+  return all;
+}
+
+void expect_certified(const TickResult& r, double distance) {
+  const double bound = r.certificate.error_bound_m;
+  ASSERT_TRUE(std::isfinite(bound));
+  if (r.contacts.empty()) {
+    EXPECT_GE(distance + bound, 0.9999 * kDelta) << "a contact was lost";
+  } else if (distance > 0) {
+    EXPECT_LE(std::abs(r.min_distance_m - distance), bound + 2e-6);
+  }
+}
+
+double sum_of_forces(const TickResult& r) {
+  double sum = 0;
+  for (const Contact& c : r.contacts) sum += kSettings.stiffness_N_per_m * (kDelta - c.distance_m);
+  return sum;
+}
+
+TEST(RegionsBudget, every_budget_gives_a_true_certificate) {
+  std::vector<double> forces;
+  BakedScene exact = scene_with(kSettings);
+  for (int i = 0; i < kTicks; ++i) {
+    const Pose poses[2] = {motion(i), {}};
+    forces.push_back(sum_of_forces(tick_or_fail(*exact.engine, poses)));
+  }
+  double last_mean = std::numeric_limits<double>::infinity();
+  for (const std::uint64_t units : {0u, 1u, 10u, 50u, 200u, 1000u, 5000u, 100000u}) {
+    BakedScene scene = scene_with(kSettings);
+    double mean = 0;
+    for (int i = 0; i < kTicks; ++i) {
+      const Pose poses[2] = {motion(i), {}};
+      const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
+      EXPECT_EQ(r.certificate.units_used, r.queries);
+      expect_certified(r, truth()[static_cast<std::size_t>(i)]);
+      mean += r.certificate.error_bound_m / kTicks;
+      if (truth()[static_cast<std::size_t>(i)] == 0) continue;  // depths are not covered
+      EXPECT_LE(std::abs(sum_of_forces(r) - forces[static_cast<std::size_t>(i)]),
+                r.certificate.force_bound_N + 0.05)
+          << units << " units, tick " << i;
+    }
+    EXPECT_LE(mean, 1.05 * last_mean) << units << " units";
+    last_mean = mean;
+  }
+  EXPECT_LT(last_mean, 1e-5);
+}
+
+TEST(RegionsBudget, force_tolerance_is_kept_and_saves_work) {
+  BakedScene exact = scene_with(kSettings);
+  for (const double tolerance_N : {3.0, 10.0, 30.0}) {
+    Settings settings = kSettings;
+    settings.exact = false;
+    settings.force_tolerance_N = tolerance_N;
+    BakedScene scene = scene_with(settings);
+    std::uint64_t spent = 0;
+    std::uint64_t spent_exactly = 0;
+    for (int i = 0; i < kTicks; ++i) {
+      const Pose poses[2] = {motion(i), {}};
+      const TickResult r = tick_or_fail(*scene.engine, poses);
+      EXPECT_FALSE(r.certificate.truncated());
+      EXPECT_LE(r.certificate.force_bound_N, tolerance_N * (1 + 1e-6) + 0.05);
+      spent += r.queries;
+      spent_exactly += tick_or_fail(*exact.engine, poses).queries;
+    }
+    if (tolerance_N >= 10) {
+      EXPECT_LT(spent, spent_exactly);
+    }
+  }
+}
+
+TEST(RegionsBudget, same_input_gives_the_same_bits) {
+  for (const std::uint64_t units : {30u, 300u, 100000u}) {
+    BakedScene one = scene_with(kSettings);
+    BakedScene other = scene_with(kSettings);
+    for (int i = 0; i < kTicks; ++i) {
+      const Pose poses[2] = {motion(i), {}};
+      const TickResult r = tick_or_fail(*one.engine, poses, {.units = units});
+      const TickResult s = tick_or_fail(*other.engine, poses, {.units = units});
+      ASSERT_EQ(std::memcmp(&r.wrench, &s.wrench, sizeof r.wrench), 0);
+      ASSERT_EQ(r.contacts.size(), s.contacts.size());
+      ASSERT_EQ(r.queries, s.queries);
+    }
+  }
+}
+
+TEST(RegionsBudget, cold_budget_is_no_worse_than_what_an_exact_cold_tick_has_reached) {
+  for (const int start : {0, 10, 24, 40}) {
+    const Pose poses[2] = {motion(start), {}};
+    BakedScene exact = scene_with(kSettings);
+    const TickResult whole = tick_or_fail(*exact.engine, poses);
+    double last = std::numeric_limits<double>::infinity();
+    for (const double share : {0.25, 0.5, 1.5}) {
+      BakedScene scene = scene_with(kSettings);
+      const auto units = static_cast<std::uint64_t>(share * double(whole.queries));
+      const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
+      EXPECT_LE(r.certificate.force_bound_N, last);
+      last = r.certificate.force_bound_N;
+    }
+  }
+}
+
+struct CountingClock {
+  std::uint64_t now = 0;
+  static std::uint64_t read(void* self) { return ++static_cast<CountingClock*>(self)->now; }
+};
+
+TEST(RegionsBudget, deadline_ends_refinement) {
+  BakedScene scene = scene_with(kSettings);
+  const Pose poses[2] = {motion(0), {}};
+  CountingClock clock;
+  const TickResult r =
+      tick_or_fail(*scene.engine, poses,
+                   {.clock_ns = CountingClock::read, .clock_context = &clock, .deadline_ns = 6});
+  EXPECT_TRUE(r.certificate.truncated_by_time);
+  EXPECT_LE(clock.now, 12u);
+  expect_certified(r, truth()[0]);
+}
+
+TEST(RegionsBudget, few_contacts_are_a_reported_graceful_stop) {
+  BakedScene scene = scene_with(kSettings, {.contacts = 1});
+  bool met = false;
+  for (int i = 0; i < 20; ++i) {
+    const Pose poses[2] = {motion(i), {}};
+    const TickResult r = tick_or_fail(*scene.engine, poses);
+    met |= r.certificate.truncated_by_memory;
+    EXPECT_LE(r.contacts.size(), 1u);
+  }
+  EXPECT_TRUE(met);
+}
+
+TEST(RegionsRefusals, image_without_regions_is_refused) {
+  const BakedBody levels_only(box(1, 1, 1));
+  const std::vector<ImageView> views = {levels_only.view, bodies().b.view};
+  const std::vector<BodyPair> pairs = {{0, 1}};
+  const Scene scene{views, pairs, 0};
+  AlignedBytes memory(required_bytes(scene, {}, EngineKind::regions));
+  Engine* engine = nullptr;
+  EXPECT_EQ(create(scene, kSettings, {}, memory.span(), engine), Status::image_missing_section);
+}
+
+TEST(RegionsRefusals, kind_of_engine_cannot_be_changed_between_ticks) {
+  BakedScene scene = scene_with(kSettings);
+  Settings other = kSettings;
+  other.engine = EngineKind::levels;
+  EXPECT_EQ(configure(*scene.engine, other), Status::bad_argument);
+}
+
+TEST(RegionsAllocationTrap, mixed_ticks_call_no_allocator_and_fault_no_page) {
+  const BakedBody c(bowl(8, 16, 1.2), bake::ForEngine::regions);
+  BakedScene scene({bodies().a.view, bodies().b.view, c.view}, {{0, 1}, {0, 2}}, kSettings);
+  Pose poses[3];
+  poses[2] = {{3.2, 0.1, 1}, turn({0, 1, 0})};
+  TickResult result;
+  const auto place = [&](int i) {
+    poses[0] = motion(i);
+    poses[0].position_m.x += 0.1 * std::sin(0.01 * i);  // parts and overlaps
+    poses[0].position_m.z = 0.2 * std::cos(0.002 * i);
+  };
+  for (int i = 0; i < 700; ++i) {  // maps code and stack
+    place(i);
+    ASSERT_EQ(tick(*scene.engine, poses, {}, result), Status::ok);
+  }
+  const realtime::ThreadCounters before = realtime::thread_counters();
+  bool sound = true;
+  std::size_t contacts = 0;
+  for (int i = 0; i < 5000; ++i) {
+    place(i);
+    const Budget budget = i % 3 == 0 ? Budget{.units = 50} : Budget{};
+    sound &= tick(*scene.engine, poses, budget, result) == Status::ok;
+    contacts += result.contacts.size();
+  }
+  const realtime::ThreadCounters spent = realtime::thread_counters() - before;
+  EXPECT_TRUE(sound);
+  EXPECT_GT(contacts, 5000u);
+  if (!spent.allocator_calls) GTEST_SKIP() << "a sanitizer brings an allocator of its own";
+  EXPECT_EQ(*spent.allocator_calls, 0u);
+  EXPECT_EQ(spent.minor_faults, 0u);
+  EXPECT_EQ(spent.major_faults, 0u);
+}
+
+}  // namespace
+}  // namespace palpate::test

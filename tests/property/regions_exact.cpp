@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The region engine against brute force over all triangles: every region's least distance, bounds
+// that hold wherever a search ends, overlap that begins at zero.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "rt_core/regions/sweep.hpp"
+#include "tests/support/brute_force.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace palpate::test {
+namespace {
+
+constexpr bake::ForEngine kRegions = bake::ForEngine::regions;
+
+Settings exact_settings(double delta) {
+  return {
+      .engine = EngineKind::regions, .delta_m = delta, .exact = true, .cluster_radius_m = delta};
+}
+
+Vec3d random_unit(std::mt19937& rng) {
+  std::normal_distribution<double> g;
+  const Vec3d v{g(rng), g(rng), g(rng)};
+  return (1 / norm(v)) * v;
+}
+
+/// A pose of a around b in which they are `gap` apart along a direction, by conservative
+/// advancement.
+Pose approach(const bake::Mesh& a, const bake::Mesh& b, double gap, double far, Vec3d direction,
+              Quat orientation) {
+  Pose pose{far * direction, orientation};
+  const PlacedTriangles fixed(b, {});
+  for (int i = 0; i < 40; ++i) {
+    const double d = distance_of(PlacedTriangles(a, pose), fixed);
+    if (d <= gap * 1.001) break;
+    pose.position_m -= (d - gap) * direction;
+  }
+  return pose;
+}
+
+/// Least distance of each region of a from b, or `most`.
+std::vector<double> region_distances(const BakedBody& a, const PlacedTriangles& moved,
+                                     const PlacedTriangles& fixed, double most) {
+  std::vector<double> least(a.view.regions.size(), most);
+  for (const image::RegionTriangle& t : a.view.region_triangles) {
+    least[t.region] = distance_from(moved, t.source, fixed, least[t.region]);
+  }
+  return least;
+}
+
+void expect_region_minima(const TickResult& result, std::vector<double> truth, double delta,
+                          double unit) {
+  std::vector<double> found;
+  for (const Contact& c : result.contacts) {
+    found.push_back(c.distance_m);
+    EXPECT_NEAR(norm(c.point_a_m - c.point_b_m), std::abs(c.distance_m), 1e-6 * unit);
+    EXPECT_NEAR(norm(c.normal), 1, 1e-6);
+  }
+  // Beside delta rounding decides.
+  std::erase_if(truth, [&](double d) { return d > delta - 1e-6 * unit; });
+  std::sort(truth.begin(), truth.end());
+  std::sort(found.begin(), found.end());
+  ASSERT_GE(found.size(), truth.size());
+  for (std::size_t i = 0; i < truth.size(); ++i) EXPECT_NEAR(found[i], truth[i], 1e-6 * unit);
+  for (std::size_t i = truth.size(); i < found.size(); ++i) {
+    EXPECT_NEAR(found[i], delta, 2e-6 * unit);
+  }
+  EXPECT_LT(result.certificate.error_bound_m, 1e-5 * unit);
+}
+
+struct Case {
+  const char* name;
+  bake::Mesh (*a)();
+  bake::Mesh (*b)();
+};
+
+void PrintTo(const Case& c, std::ostream* os) { *os << c.name; }
+
+class RegionsExact : public testing::TestWithParam<Case> {};
+
+TEST_P(RegionsExact, minima_of_all_regions_agree_with_brute_force) {
+  for (const double scale : {1e-6, 1.0, 1e4}) {
+    const BakedBody a(scaled(GetParam().a(), scale), kRegions);
+    const BakedBody b(scaled(GetParam().b(), scale), kRegions);
+    const double unit = std::max(a.view.header->radius_m, b.view.header->radius_m);
+    const double delta = 0.05 * std::min(a.view.header->radius_m, b.view.header->radius_m);
+    BakedScene scene({a.view, b.view}, {{0, 1}}, exact_settings(delta));
+    const PlacedTriangles fixed(b.mesh, {});
+    std::mt19937 rng(11);
+    for (int jump = 0; jump < 4; ++jump) {
+      Vec3d direction = random_unit(rng);
+      Quat orientation = turn(3.0 * random_unit(rng));
+      for (int step = 0; step < 3; ++step) {
+        const double gap = delta * (0.1 + 0.3 * step);
+        const Pose poses[2] = {approach(a.mesh, b.mesh, gap, 4 * unit, direction, orientation), {}};
+        const TickResult result = tick_or_fail(*scene.engine, poses);
+        const PlacedTriangles moved(a.mesh, poses[0]);
+        expect_region_minima(result, region_distances(a, moved, fixed, 2 * delta), delta, unit);
+        direction = direction + 0.01 * random_unit(rng);
+        direction = (1 / norm(direction)) * direction;
+        orientation = turn(0.01 * random_unit(rng)) * orientation;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, RegionsExact,
+                         testing::Values(Case{"bumpy_balls", [] { return bumpy_ball(14, 20, 1); },
+                                              [] { return bumpy_ball(12, 12, 0.8); }},
+                                         Case{"small_on_large", [] { return ball(10, 12, 0.02); },
+                                              [] { return bumpy_ball(16, 20, 1); }},
+                                         Case{"ball_on_ring", [] { return ball(8, 12, 0.5); },
+                                              [] { return ring(20, 10, 1, 0.3); }},
+                                         Case{"boxes", [] { return box(0.5, 0.3, 0.2); },
+                                              [] { return box(1, 1, 0.1); }},
+                                         Case{"open_bowl", [] { return ball(6, 8, 0.3); },
+                                              [] { return bowl(6, 12, 1); }}),
+                         [](const auto& tested) { return tested.param.name; });
+
+struct Bodies {
+  BakedBody a{bumpy_ball(20, 28, 1), kRegions};
+  BakedBody b{bumpy_ball(16, 16, 0.8), kRegions};
+};
+
+const Bodies& bodies() {
+  static const Bodies both;
+  return both;
+}
+
+/// A pair of the bodies as the search sees it, a at a pose; metres are units, for a's radius is
+/// about 1.
+struct SearchedPair {
+  explicit SearchedPair(const Pose& pose) {
+    pair.image_a = &bodies().a.view;
+    pair.image_b = &bodies().b.view;
+    pair.unit_m = pair.image_a->header->radius_m;
+    pair.scale_b = pair.image_b->header->radius_m / pair.unit_m;
+    levels::move(pair, pose, {});
+    frame = regions::frame_of(pair);
+  }
+  levels::PairState pair;
+  regions::PairFrame frame;
+  std::unique_ptr<regions::SearchScratch> scratch = std::make_unique<regions::SearchScratch>();
+};
+
+std::vector<double> truth_in_units(const Pose& pose, double unit_m) {
+  const PlacedTriangles fixed(bodies().b.mesh, {});
+  std::vector<double> truth = region_distances(bodies().a, PlacedTriangles(bodies().a.mesh, pose),
+                                               fixed, std::numeric_limits<double>::max());
+  for (double& d : truth) d /= unit_m;
+  return truth;
+}
+
+const Pose kNear{{1.72, 0.2, 0.3}, turn({0.3, 0.2, -0.4})};
+constexpr double kRounding = 2e-7;  // of the distances of single triangles
+
+TEST(RegionSearch, bounds_hold_wherever_the_budget_ends_it) {
+  SearchedPair at(kNear);
+  const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
+  for (std::uint32_t region = 0; region < truth.size(); region += 3) {
+    const double d = truth[region];
+    for (const float tolerance : {0.0f, 0.01f}) {
+      for (const std::uint64_t units : {0u, 1u, 3u, 9u, 20u, 50u, 100000u}) {
+        Meter meter({.units = units}, 0);
+        regions::Pace pace(meter);
+        const regions::Bounds found = regions::search(
+            regions::best_kernels(), at.frame, *at.scratch, pace, region, {}, 0.5f, tolerance);
+        ASSERT_LE(double(found.lower), d) << region << " " << units;
+        if (found.best.known()) {
+          ASSERT_GE(double(found.best.distance), d - kRounding);
+        }
+        if (!found.complete || d > 0.5) continue;
+        ASSERT_TRUE(found.best.known());
+        ASSERT_GE(double(found.lower), d - double(tolerance) - 2 * double(regions::kRounding));
+        if (tolerance == 0) {
+          ASSERT_NEAR(double(found.best.distance), d, kRounding);
+        }
+      }
+    }
+  }
+}
+
+TEST(RegionSweep, bounds_all_regions_from_below_wherever_the_budget_ends_it) {
+  SearchedPair at(kNear);
+  const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
+  std::vector<regions::Swept> swept(truth.size());
+  for (const std::uint64_t units : {0u, 5u, 50u, 100000u}) {
+    Meter meter({.units = units}, 0);
+    regions::Pace pace(meter);
+    regions::sweep(regions::best_kernels(), at.frame, *at.scratch, pace, 0.1f, swept);
+    int told_apart = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const double lower = std::sqrt(double(swept[i].squared));
+      ASSERT_LE(lower - double(regions::kRounding), truth[i]);
+      told_apart += lower >= 0.1 ? 1 : 0;
+      if (lower < 0.1) {
+        ASSERT_NE(swept[i].seed, image::kNone);
+      }
+    }
+    if (units == 100000) {
+      EXPECT_GT(told_apart, int(truth.size()) / 2);
+    }
+  }
+}
+
+TEST(RegionSearch, dive_and_climb_find_a_pair_of_the_region) {
+  SearchedPair at(kNear);
+  const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
+  Meter meter({}, 0);
+  regions::Pace pace(meter);
+  std::vector<regions::Swept> swept(truth.size());
+  regions::sweep(regions::best_kernels(), at.frame, *at.scratch, pace, 0.1f, swept);
+  int near = 0;
+  for (std::uint32_t i = 0; i < truth.size(); ++i) {
+    if (swept[i].seed == image::kNone) continue;
+    regions::Witness w =
+        regions::dive(regions::best_kernels(), at.frame, *at.scratch, pace, i, swept[i].seed);
+    ASSERT_TRUE(w.known());
+    const float before = w.distance;
+    regions::climb(regions::best_kernels(), at.frame, *at.scratch, pace, w);
+    EXPECT_LE(w.distance, before);
+    EXPECT_EQ(bodies().a.view.region_triangles[w.a].region, i);
+    EXPECT_GE(double(w.distance), truth[i] - kRounding);
+    ++near;
+  }
+  EXPECT_GT(near, 3);
+}
+
+TEST(RegionsCrossing, overlap_begins_at_zero_and_grows_with_depth) {
+  const BakedBody a(bumpy_ball(14, 20, 1), kRegions);
+  const BakedBody b(box(1, 1, 0.5), kRegions);
+  BakedScene scene({a.view, b.view}, {{0, 1}}, exact_settings(0.02));
+  const Pose touch = approach(a.mesh, b.mesh, 1e-4, 4, {0, 0, 1}, {});
+  double last = 1e-4;
+  for (int i = 0; i < 40; ++i) {
+    Pose poses[2] = {touch, {}};
+    poses[0].position_m.z -= 2e-4 * i;
+    const TickResult r = tick_or_fail(*scene.engine, poses);
+    ASSERT_FALSE(r.contacts.empty());
+    EXPECT_NEAR(r.min_distance_m, last, 4e-4) << i;
+    EXPECT_GT(r.wrench.force_N.z, 0) << i;
+    last = r.min_distance_m;
+  }
+  EXPECT_LT(last, -1e-3);
+}
+
+TEST(RegionsExact, moving_both_bodies_turns_the_wrench_with_them) {
+  BakedScene one({bodies().a.view, bodies().b.view}, {{0, 1}}, exact_settings(0.05));
+  BakedScene other({bodies().a.view, bodies().b.view}, {{0, 1}}, exact_settings(0.05));
+  const Pose world{{3, -2, 5}, turn({0.7, -1.1, 0.4})};
+  const Mat3d r = rotation(world.orientation);
+  for (int i = 0; i < 50; ++i) {
+    const Pose poses[2] = {
+        {{1.81 - 0.0002 * i, 0.1, 0.002 * i}, turn({0.3 + 0.003 * i, 0.2, 0.001 * i})}, {}};
+    Pose moved[2];
+    for (int k = 0; k < 2; ++k) {
+      moved[k] = {world.position_m + r * poses[k].position_m,
+                  world.orientation * poses[k].orientation};
+    }
+    const Wrench w = tick_or_fail(*one.engine, poses).wrench;
+    const Wrench v = tick_or_fail(*other.engine, moved).wrench;
+    EXPECT_NEAR(norm(r * w.force_N - v.force_N), 0, 1e-4 * (norm(w.force_N) + 1e-3));
+    EXPECT_NEAR(norm(r * w.torque_Nm - v.torque_Nm), 0, 1e-4 * (norm(w.torque_Nm) + 1e-3));
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/kernels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <random>
+#include <span>
+
+#include "rt_core/convex/triangles.hpp"
+
+namespace palpate::regions {
+namespace {
+
+using Random = std::mt19937_64;
+
+double uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+Vec3d in_cube(Random& random, double half) {
+  return {uniform(random, -half, half), uniform(random, -half, half), uniform(random, -half, half)};
+}
+
+Mat3d random_rotation(Random& random) {
+  Quat q{uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1),
+         uniform(random, -1, 1)};
+  const double n = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  return rotation(Quat{q.w / n, q.x / n, q.y / n, q.z / n});
+}
+
+Transform in_float(const Mat3d& r, Vec3d t, double scale) {
+  const auto f = [](double v) { return static_cast<float>(v); };
+  return {{f(r.row0.x), f(r.row0.y), f(r.row0.z), f(r.row1.x), f(r.row1.y), f(r.row1.z),
+           f(r.row2.x), f(r.row2.y), f(r.row2.z)},
+          {f(t.x), f(t.y), f(t.z)},
+          f(scale)};
+}
+
+/// The map that the floats stand for, in double.
+Vec3d mapped(const Transform& m, Vec3d p) {
+  const auto row = [&](int i) {
+    return Vec3d{double(m.rotation[3 * i]), double(m.rotation[3 * i + 1]),
+                 double(m.rotation[3 * i + 2])};
+  };
+  const Vec3d s = double(m.scale) * p;
+  return {dot(row(0), s) + double(m.translation[0]), dot(row(1), s) + double(m.translation[1]),
+          dot(row(2), s) + double(m.translation[2])};
+}
+
+/// Triangles of all kinds: fat ones, needles, caps, segments and points.
+image::RegionTriangle random_triangle(Random& random, double size) {
+  Vec3d p[3] = {in_cube(random, 0.5), {}, {}};
+  p[1] = p[0] + in_cube(random, size);
+  p[2] = p[0] + in_cube(random, size);
+  switch (random() % 8) {
+    case 0:
+      p[2] = p[1] + in_cube(random, 1e-4 * size);
+      break;
+    case 1:
+      p[2] = 0.5 * (p[0] + p[1]) + in_cube(random, 1e-4 * size);
+      break;
+    case 2:
+      p[2] = 0.3 * p[0] + 0.7 * p[1];
+      break;
+    case 3:
+      p[2] = p[1];
+      break;
+    case 4:
+      p[1] = p[2] = p[0];
+      break;
+    default:
+      break;
+  }
+  image::RegionTriangle t{};
+  for (int i = 0; i < 3; ++i) {
+    t.corners[3 * i] = static_cast<float>(p[i].x);
+    t.corners[3 * i + 1] = static_cast<float>(p[i].y);
+    t.corners[3 * i + 2] = static_cast<float>(p[i].z);
+  }
+  return t;
+}
+
+Vec3d corner(const image::RegionTriangle& t, int i) {
+  return {double(t.corners[3 * i]), double(t.corners[3 * i + 1]), double(t.corners[3 * i + 2])};
+}
+
+struct Pairs {
+  image::RegionTriangle a[kBatch], b[kBatch];
+  const image::RegionTriangle *at_a[kBatch], *at_b[kBatch];
+  Transform map;
+};
+
+Pairs random_pairs(Random& random) {
+  Pairs pairs;
+  const double size = std::pow(10.0, uniform(random, -3.0, 0.0));
+  pairs.map = in_float(random_rotation(random), in_cube(random, 0.05 + size),
+                       std::pow(10.0, uniform(random, -1.0, 1.0)));
+  for (std::uint32_t i = 0; i < kBatch; ++i) {
+    pairs.a[i] = random_triangle(random, size);
+    pairs.b[i] = random_triangle(random, size);
+    // Most pairs of one size are far apart; these meet.
+    const Vec3d to = mapped(pairs.map, corner(pairs.a[i], 0));
+    const Vec3d by = to - corner(pairs.b[i], 0) + in_cube(random, size);
+    for (int c = 0; c < 3; ++c) {
+      pairs.b[i].corners[3 * c] += static_cast<float>(by.x);
+      pairs.b[i].corners[3 * c + 1] += static_cast<float>(by.y);
+      pairs.b[i].corners[3 * c + 2] += static_cast<float>(by.z);
+    }
+    pairs.at_a[i] = &pairs.a[i];
+    pairs.at_b[i] = &pairs.b[i];
+  }
+  return pairs;
+}
+
+convex::TriangleDistance truth(const Pairs& pairs, std::uint32_t i) {
+  Vec3d a[3], b[3];
+  for (int c = 0; c < 3; ++c) {
+    a[c] = mapped(pairs.map, corner(pairs.a[i], c));
+    b[c] = corner(pairs.b[i], c);
+  }
+  return convex::triangle_distance(a, b);
+}
+
+std::span<const Kernels* const> tables() {
+  static const Kernels* found[3];
+  static const std::uint32_t count = all_kernels(found);
+  return {found, count};
+}
+
+TEST(RegionKernels, TriangleDistance_of_all_kinds_of_triangles_is_right_to_a_millionth) {
+  Random random(1);
+  const auto scratch = std::make_unique<KernelScratch>();
+  for (int round = 0; round < 4000; ++round) {
+    const Pairs pairs = random_pairs(random);
+    float squared[kBatch];
+    const std::uint32_t crossing =
+        best_kernels().triangle_distances(pairs.at_a, pairs.at_b, pairs.map, *scratch, squared);
+    const double size = 1 + 10 * double(pairs.map.scale);
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      const double exact = truth(pairs, i).distance;
+      ASSERT_NEAR(std::sqrt(double(squared[i])), exact, 1e-6 * size) << round << " " << i;
+      if ((crossing >> i & 1) != 0) {
+        ASSERT_EQ(squared[i], 0.0f);
+      }
+    }
+  }
+}
+
+/// Corners of a box that is given by axes, centre and half lengths.
+std::array<Vec3d, 8> corners_of(const Vec3d (&axes)[3], Vec3d centre, const double (&half)[3]) {
+  std::array<Vec3d, 8> out;
+  for (std::size_t i = 0; i < 8; ++i) {
+    out[i] = centre;
+    for (int k = 0; k < 3; ++k) out[i] += ((i >> k & 1) != 0 ? half[k] : -half[k]) * axes[k];
+  }
+  return out;
+}
+
+struct Boxes {
+  Box one;
+  image::RegionNode node{};
+  Transform map;
+  std::array<Vec3d, 8> corners_of_one;  // in the node's coordinates
+  std::array<std::array<Vec3d, 8>, kBatch> corners;
+};
+
+Boxes random_boxes(Random& random) {
+  Boxes boxes;
+  boxes.map = in_float(random_rotation(random), in_cube(random, 1),
+                       std::pow(10.0, uniform(random, -1.0, 1.0)));
+  const auto draw = [&](double size, Vec3d(&axes)[3], Vec3d& centre, double(&half)[3]) {
+    const Mat3d r = random_rotation(random);
+    const auto f = [](Vec3d v) { return vec_cast<double>(vec_cast<float>(v)); };
+    axes[0] = f(r.row0), axes[1] = f(r.row1), axes[2] = f(r.row2);
+    centre = f(in_cube(random, 0.7));
+    for (double& h : half) h = double(static_cast<float>(uniform(random, 0, size)));
+  };
+  Vec3d axes[3], centre;
+  double half[3];
+  draw(0.2, axes, centre, half);
+  const auto put = [](Box& box, int i, Vec3d v) {
+    box.x[i] = float(v.x), box.y[i] = float(v.y), box.z[i] = float(v.z);
+  };
+  for (int k = 0; k < 3; ++k) put(boxes.one, k, axes[k]), boxes.one.half[k] = float(half[k]);
+  put(boxes.one, 3, centre);
+  boxes.one.half[3] = 0;
+  boxes.corners_of_one = corners_of(axes, centre, half);
+  for (Vec3d& p : boxes.corners_of_one) p = mapped(boxes.map, p);
+  for (std::uint32_t i = 0; i < kBatch; ++i) {
+    draw(0.3, axes, centre, half);
+    const double row[3] = {centre.x, centre.y, centre.z};
+    for (int k = 0; k < 3; ++k) {
+      boxes.node.centre[k][i] = float(row[k]);
+      boxes.node.half[k][i] = float(half[k]);
+      boxes.node.axes[3 * k][i] = float(axes[k].x);
+      boxes.node.axes[3 * k + 1][i] = float(axes[k].y);
+      boxes.node.axes[3 * k + 2][i] = float(axes[k].z);
+    }
+    boxes.corners[i] = corners_of(axes, centre, half);
+  }
+  return boxes;
+}
+
+/// Nearest of some random points of both boxes: no bound may be larger.
+double nearest_points(Random& random, const std::array<Vec3d, 8>& a,
+                      const std::array<Vec3d, 8>& b) {
+  const auto point = [&](const std::array<Vec3d, 8>& corners) {
+    Vec3d p = corners[0];
+    for (int k = 0; k < 3; ++k) {
+      const double t = std::clamp(uniform(random, -0.5, 1.5), 0.0, 1.0);  // often on the surface
+      p += t * (corners[std::size_t{1} << k] - corners[0]);
+    }
+    return p;
+  };
+  double least = 1e9;
+  for (int i = 0; i < 60; ++i) least = std::min(least, norm(point(a) - point(b)));
+  return least;
+}
+
+TEST(RegionKernels, BoxBound_never_exceeds_the_distance_of_two_points_of_the_boxes) {
+  Random random(3);
+  int positive = 0;
+  for (int round = 0; round < 1000; ++round) {
+    const Boxes boxes = random_boxes(random);
+    float squared[kBatch];
+    const std::uint32_t near =
+        best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 0.25f, squared);
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      const double bound = std::sqrt(double(squared[i]));
+      ASSERT_LE(bound, nearest_points(random, boxes.corners_of_one, boxes.corners[i]) +
+                           1e-6 * (1 + double(boxes.map.scale)));
+      ASSERT_EQ((near >> i & 1) != 0, squared[i] < 0.25f);
+      positive += bound > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(positive, 8000);  // else the bound would be of no use
+}
+
+TEST(RegionKernels, BoxBound_of_aligned_boxes_is_their_distance) {
+  Boxes boxes;
+  boxes.map = in_float(Mat3d{}, Vec3d{3, 0, 0}, 1);
+  boxes.one = {{1, 0, 0, 0}, {0, 1, 0, 2}, {0, 0, 1, 0}, {0.5f, 0.5f, 0.5f, 0}};
+  for (std::uint32_t i = 0; i < kBatch; ++i) {
+    boxes.node.axes[0][i] = boxes.node.axes[4][i] = boxes.node.axes[8][i] = 1;
+    for (auto& half : boxes.node.half) half[i] = 0.5f;
+  }
+  float squared[kBatch];
+  best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, squared);
+  EXPECT_EQ(squared[5], 2.0f * 2.0f + 1.0f);
+}
+
+TEST(RegionKernels, Witnesses_are_as_far_apart_as_the_triangles) {
+  Random random(4);
+  const auto scratch = std::make_unique<KernelScratch>();
+  for (int round = 0; round < 1000; ++round) {
+    Pairs pairs = random_pairs(random);
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      for (int c = 0; c < 3; ++c) {
+        const Vec3d a = mapped(pairs.map, corner(pairs.a[i], c)) - corner(pairs.b[i], 0);
+        const Vec3d b = corner(pairs.b[i], c) - corner(pairs.b[i], 0);
+        const double rows_a[3] = {a.x, a.y, a.z}, rows_b[3] = {b.x, b.y, b.z};
+        for (int k = 0; k < 3; ++k) {
+          scratch->lanes.a[3 * c + k][i] = static_cast<float>(rows_a[k]);
+          scratch->lanes.b[3 * c + k][i] = static_cast<float>(rows_b[k]);
+        }
+      }
+    }
+    WitnessLanes found;
+    best_kernels().witnesses(*scratch, found);
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      const convex::TriangleDistance exact = truth(pairs, i);
+      const Vec3d apart{double(found.apart[0][i]), double(found.apart[1][i]),
+                        double(found.apart[2][i])};
+      if ((found.crossing >> i & 1) != 0) {
+        ASSERT_LE(exact.distance, 1e-6);
+      } else {
+        ASSERT_NEAR(norm(apart), exact.distance, 1e-6 * (1 + 10 * double(pairs.map.scale)));
+      }
+    }
+  }
+}
+
+TEST(RegionKernels, Tables_give_the_same_bits) {
+  Random random(2);
+  const auto scratch = std::make_unique<KernelScratch>();
+  for (int round = 0; round < 500; ++round) {
+    const Pairs pairs = random_pairs(random);
+    const Boxes boxes = random_boxes(random);
+    float first[kBatch], other[kBatch];
+    WitnessLanes found_first, found_other;
+    const auto run = [&](const Kernels& table, float(&squared)[kBatch], WitnessLanes& found) {
+      const std::uint32_t crossing =
+          table.triangle_distances(pairs.at_a, pairs.at_b, pairs.map, *scratch, squared);
+      table.witnesses(*scratch, found);  // of the lanes that the call above has left
+      return crossing;
+    };
+    const std::uint32_t crossing = run(*tables()[0], first, found_first);
+    for (const Kernels* table : tables()) {
+      ASSERT_EQ(crossing, run(*table, other, found_other));
+      ASSERT_EQ(std::memcmp(first, other, sizeof first), 0) << table->name;
+      ASSERT_EQ(std::memcmp(found_first.apart, found_other.apart, sizeof found_first.apart), 0);
+      ASSERT_EQ(std::memcmp(found_first.on_a, found_other.on_a, sizeof found_first.on_a), 0);
+      ASSERT_EQ(found_first.crossing, found_other.crossing);
+    }
+    const std::uint32_t near = tables()[0]->test_boxes(boxes.one, boxes.map, boxes.node, 1, first);
+    for (const Kernels* table : tables()) {
+      ASSERT_EQ(near, table->test_boxes(boxes.one, boxes.map, boxes.node, 1, other));
+      ASSERT_EQ(std::memcmp(first, other, sizeof first), 0) << table->name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate::regions

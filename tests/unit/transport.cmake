@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+palpate_test(transport_test SOURCES unit/streamed_device.cpp LIBS palpate_hal)

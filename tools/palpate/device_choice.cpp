@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/palpate/device_choice.hpp"
+
+#include <fstream>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "hal/falcon/bring_up.hpp"
+#include "hal/falcon/driver.hpp"
+#include "hal/protocol/host_driver.hpp"
+#include "hal/transport/streamed_device.hpp"
+#include "tools/palpate/command.hpp"
+
+namespace palpate::cli {
+namespace {
+
+std::vector<std::byte> read_firmware(const std::filesystem::path& file) {
+  if (file.empty()) return {};
+  std::ifstream in(file, std::ios::binary);
+  // One byte more than is allowed says that there are more.
+  std::vector<std::byte> bytes(hal::falcon::kMaxFirmwareBytes + 1);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  if (bytes.empty()) {
+    throw Failure(kRefused, "cannot read the firmware file", file.string(),
+                  "give the path of the maker's file");
+  }
+  return bytes;
+}
+
+}  // namespace
+
+DeviceChoice parse_device(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) return {text, ""};
+  return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+CLI::Validator is_device() {
+  return {[](const std::string& text) -> std::string {
+            const std::string kind = parse_device(text).kind;
+            const bool known = text == "mock" || kind == "usb" || kind == "falcon";
+            return known ? "" : "unknown device '" + text + "'";
+          },
+          "DEVICE"};
+}
+
+void fail(const std::string& device, const hal::DeviceProblem& problem) {
+  throw Failure(kDevice, "device failed at " + problem.phase + ", " + problem.cause, device,
+                problem.mend);
+}
+
+std::unique_ptr<hal::Transport> open_usb(const std::string& device, hal::usb::Kind kind) {
+  auto opened = hal::usb::open_transport(kind, parse_device(device).serial);
+  if (const auto* problem = std::get_if<hal::DeviceProblem>(&opened)) fail(device, *problem);
+  return std::move(std::get<std::unique_ptr<hal::Transport>>(opened));
+}
+
+std::unique_ptr<hal::Device> make_usb_device(const std::string& device,
+                                             const std::filesystem::path& firmware,
+                                             hal::Clock& clock, int fifo_priority) {
+  std::unique_ptr<hal::Driver> driver;
+  auto kind = hal::usb::Kind::open_protocol;
+  if (parse_device(device).kind == "falcon") {
+    kind = hal::usb::Kind::falcon;
+    driver = std::make_unique<hal::falcon::FalconDriver>(read_firmware(firmware));
+  } else {
+    driver = std::make_unique<hal::protocol::HostDriver>();
+  }
+  hal::StreamOptions options;
+  options.fifo_priority = fifo_priority;
+  return std::make_unique<hal::StreamedDevice>(open_usb(device, kind), std::move(driver), clock,
+                                               options);
+}
+
+}  // namespace palpate::cli
