@@ -14,19 +14,10 @@
 #include <vector>
 
 #include "hal/transport/transport.hpp"
+#include "hal/usb/interfaces.hpp"
 #include "hal/usb/usb_session.hpp"
 
 namespace palpate::hal::usb {
-
-/// An interface with its endpoints.
-struct Interface {
-  std::uint8_t number = 0;
-  std::uint8_t in_address = 0;   ///< 0: it has none
-  std::uint8_t out_address = 0;  ///< 0: it has none
-  std::uint8_t in_type = 0;      ///< LIBUSB_TRANSFER_TYPE_BULK or INTERRUPT
-  std::uint8_t out_type = 0;
-  std::uint16_t in_packet_bytes = 64;
-};
 
 class LibusbTransport final : public Transport {
  public:

@@ -37,7 +37,7 @@ enum class SupportReading {
 /// one_ring depends on the tessellation (it shrinks with the triangles), grown on delta alone where
 /// the surface is smooth: about 2 pi delta on a sphere.
 /// @param delta_rel  relative to the radius, > 0
-/// Cost: one_ring O(n); grown O(n * faces within delta), about 10 ns each, parallel and the same
+/// Cost: one_ring O(n); grown O(n * faces within delta), about 13 ns each, parallel and the same
 /// whatever the number of threads.
 std::vector<float> support_areas(const NormalMesh& mesh, const std::vector<Vec3d>& normals,
                                  double delta_rel,

@@ -68,4 +68,11 @@ Proof prove_resolution_ordered(const Evidence& evidence);
 /// D > 0 at every vertex.
 Proof prove_support_areas_positive(const Evidence& evidence);
 
+/// Every triangle of level 0 is in the wide tree once, with the same corners and its own piece.
+Proof prove_region_triangles(const Evidence& evidence);
+
+/// A triangle of the wide tree and its neighbour run through their common edge in opposite
+/// directions.
+Proof prove_region_neighbours(const Evidence& evidence);
+
 }  // namespace palpate::bake

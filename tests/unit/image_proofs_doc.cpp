@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// docs/FORMAT.md, Sec. 10, against what verify() proves.
+// docs/FORMAT.md, Sec. 11, against what verify() proves.
 #include <gtest/gtest.h>
 
 #include <fstream>

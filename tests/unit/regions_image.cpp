@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The region sections of an image: what the baker makes, and what validate() refuses of them.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+#include <random>
+
+#include "host_bake/mesh/mesh.hpp"
+#include "host_bake/regions/region_tree.hpp"
+#include "tests/support/baked_scene.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace palpate::test {
+namespace {
+
+using image::SectionId;
+
+const BakedBody& bumpy() {
+  static const BakedBody body(bumpy_ball(14, 20, 1), bake::ForEngine::regions);
+  return body;
+}
+
+/// A copy of a good image that can be damaged and signed again.
+class Damaged {
+ public:
+  Damaged() : bytes_(bumpy().bytes->size) {
+    std::memcpy(bytes_.data.get(), bumpy().bytes->data.get(), bytes_.size);
+  }
+  template <class T>
+  T* section(SectionId id) {
+    const image::Section& s = header().sections[static_cast<std::size_t>(id)];
+    return reinterpret_cast<T*>(bytes_.data.get() + s.offset);
+  }
+  image::Header& header() { return *reinterpret_cast<image::Header*>(bytes_.data.get()); }
+  image::RegionNode* nodes() { return section<image::RegionNode>(SectionId::region_nodes); }
+  image::RegionTriangle* triangles() {
+    return section<image::RegionTriangle>(SectionId::region_triangles);
+  }
+  image::Region* regions() { return section<image::Region>(SectionId::regions); }
+
+  Status check(ImageView& out) {
+    const auto hash = content_sha256(bytes_.span());
+    std::memcpy(header().content_sha256, hash.data(), hash.size());
+    return validate(bytes_.span(), out);
+  }
+
+ private:
+  AlignedBytes bytes_;
+};
+
+struct Damage {
+  const char* what;
+  Status refused_as;
+  std::function<void(Damaged&)> done;
+};
+
+TEST(RegionImage, Damage_of_every_kind_is_refused_by_name) {
+  ImageView view;
+  ASSERT_EQ(Damaged().check(view), Status::ok);
+  const std::vector<Damage> all = {
+      {"no root", Status::image_bad_tree, [](Damaged& d) { d.nodes()[0].parent = 0; }},
+      {"root is a leaf", Status::image_bad_tree, [](Damaged& d) { d.nodes()[0].leaf = 1; }},
+      {"leaf is no flag", Status::image_bad_tree, [](Damaged& d) { d.nodes()[1].leaf = 2; }},
+      {"no child", Status::image_bad_tree, [](Damaged& d) { d.nodes()[0].children = 0; }},
+      {"many children", Status::image_bad_tree, [](Damaged& d) { d.nodes()[0].children = 17; }},
+      {"shifted run", Status::image_bad_tree, [](Damaged& d) { ++d.nodes()[0].first; }},
+      {"other parent", Status::image_bad_tree, [](Damaged& d) { d.nodes()[1].parent = 1; }},
+      {"other region", Status::image_bad_tree, [](Damaged& d) { d.regions()[0].slot += 1; }},
+      {"no such region", Status::image_bad_tree, [](Damaged& d) { d.regions()[0].parent = ~0u; }},
+      {"regions not counted", Status::image_bad_tree, [](Damaged& d) { ++d.nodes()[0].regions; }},
+      {"regions not in order", Status::image_bad_tree,
+       [](Damaged& d) { d.nodes()[1].first_region = 1; }},
+      {"infinite box", Status::image_bad_float,
+       [](Damaged& d) { d.nodes()[0].half[1][0] = std::numeric_limits<float>::infinity(); }},
+      {"box without number", Status::image_bad_float,
+       [](Damaged& d) { d.nodes()[0].centre[1][0] = std::numeric_limits<float>::quiet_NaN(); }},
+      {"crooked axes", Status::image_bad_float, [](Damaged& d) { d.nodes()[0].axes[0][0] += 1; }},
+      {"box too small", Status::image_bad_tree,
+       [](Damaged& d) { d.nodes()[0].half[0][1] *= 0.9f; }},
+      {"corner elsewhere", Status::image_bad_tree,
+       [](Damaged& d) { d.triangles()[0].corners[0] *= 0.9f; }},
+      {"corner far away", Status::image_bad_float,
+       [](Damaged& d) { d.triangles()[0].corners[0] = 1.4f; }},
+      {"reach too short", Status::image_bad_float,
+       [](Damaged& d) { d.regions()[0].reach *= 0.5f; }},
+      {"no such neighbour", Status::image_bad_index,
+       [](Damaged& d) { d.triangles()[0].neighbours[0] = d.header().source_triangles; }},
+      {"own neighbour", Status::image_bad_index,
+       [](Damaged& d) { d.triangles()[0].neighbours[0] = 0; }},
+      {"one-sided neighbour", Status::image_bad_index,
+       [](Damaged& d) { d.triangles()[0].neighbours[0] = image::kNone; }},
+      {"no such piece", Status::image_bad_index, [](Damaged& d) { d.triangles()[0].piece = ~0u; }},
+      {"piece of no surface", Status::image_bad_index,
+       [](Damaged& d) { d.triangles()[0].piece = 0; }},
+      {"no such source", Status::image_bad_index,
+       [](Damaged& d) { d.triangles()[0].source = d.header().source_triangles; }},
+      {"other region of a triangle", Status::image_bad_index,
+       [](Damaged& d) { ++d.triangles()[0].region; }},
+      {"reserved field used", Status::image_bad_section,
+       [](Damaged& d) { d.nodes()[3].reserved[2] = 1; }},
+  };
+  for (const Damage& damage : all) {
+    Damaged image;
+    damage.done(image);
+    EXPECT_EQ(image.check(view), damage.refused_as) << damage.what;
+  }
+}
+
+TEST(RegionImage, Random_damage_is_refused_or_harmless) {
+  std::mt19937 rng(5);
+  int accepted = 0;
+  for (int round = 0; round < 400; ++round) {
+    Damaged image;
+    const SectionId id = std::array{SectionId::region_nodes, SectionId::region_triangles,
+                                    SectionId::regions}[rng() % 3];
+    const image::Section s = image.header().sections[static_cast<std::size_t>(id)];
+    auto* words = image.section<std::uint32_t>(id);
+    const std::size_t count = std::size_t{s.count} * s.stride / 4;
+    for (unsigned i = 0; i < 1 + rng() % 3; ++i) words[rng() % count] ^= 1u << (rng() % 32);
+    ImageView view;
+    if (image.check(view) != Status::ok) continue;
+    ++accepted;
+    BakedScene scene({view, bumpy().view}, {{0, 1}, {1, 0}},
+                     {.engine = EngineKind::regions, .delta_m = 0.05});
+    for (int i = 0; i < 3; ++i) {
+      const Pose poses[2] = {{{1.9 - 0.1 * i, 0.1, 0}, turn({0.1, 0.2, 0.3})}, {}};
+      tick_or_fail(*scene.engine, poses);
+    }
+  }
+  EXPECT_GT(accepted, 0);  // last bits of boxes, sources
+}
+
+bake::RegionTree tree_of(const bake::Mesh& mesh, double delta_rel) {
+  return bake::build_regions(bake::normalise(mesh), bake::region_options(delta_rel));
+}
+
+TEST(RegionTree, Same_mesh_gives_the_same_tree) {
+  const bake::Mesh mesh = bumpy_ball(30, 40, 1);
+  const bake::RegionTree one = tree_of(mesh, 0.02);
+  const bake::RegionTree other = tree_of(mesh, 0.02);
+  ASSERT_EQ(one.nodes.size(), other.nodes.size());
+  EXPECT_EQ(std::memcmp(one.nodes.data(), other.nodes.data(), one.nodes.size() * 1024), 0);
+}
+
+TEST(RegionTree, Leaves_are_nearly_full_and_regions_no_larger_than_asked) {
+  const bake::RegionTree tree = tree_of(bumpy_ball(80, 100, 1), 0.02);
+  double children = 0;
+  double leaves = 0;
+  for (const image::RegionNode& n : tree.nodes) {
+    if (n.leaf != 0) children += n.children, ++leaves;
+  }
+  EXPECT_GT(children / leaves, 6);  // regions of about fifty triangles
+  for (const image::Region& r : tree.regions) {
+    // Boxes hold spheres of the wanted radius.
+    EXPECT_LE(double(r.radius), 1.8 * bake::region_options(0.02).radius);
+  }
+}
+
+TEST(RegionTree, Opposite_walls_are_in_different_regions) {
+  bake::Mesh plate;
+  for (int i = 0; i < 8; ++i) append(plate, box(0.1, 0.1, 0.002), 0.2 * i, 0, 0);
+  const bake::RegionTree tree = tree_of(plate, 0.05);
+  std::vector<double> up(tree.regions.size()), down(tree.regions.size());
+  for (const image::RegionTriangle& t : tree.triangles) {
+    const auto p = [&](int i) {
+      return Vec3d{double(t.corners[3 * i]), double(t.corners[3 * i + 1]),
+                   double(t.corners[3 * i + 2])};
+    };
+    const Vec3d n = cross(p(1) - p(0), p(2) - p(0));
+    up[t.region] += std::max(0.0, n.z);
+    down[t.region] += std::max(0.0, -n.z);
+  }
+  for (std::size_t i = 0; i < up.size(); ++i) EXPECT_EQ(std::min(up[i], down[i]), 0);
+}
+
+TEST(RegionTree, Smallest_meshes_have_one_region) {
+  const bake::RegionTree tree = tree_of(box(1, 1, 1), 4);
+  EXPECT_GE(tree.regions.size(), 1u);
+  EXPECT_EQ(tree.triangles.size(), 12u);
+  bake::Mesh triangle;
+  triangle.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  triangle.faces = {{0, 1, 2}};
+  EXPECT_EQ(tree_of(triangle, 0.01).regions.size(), 1u);
+  EXPECT_EQ(tree_of(triangle, 0.01).nodes.size(), 2u);
+}
+
+}  // namespace
+}  // namespace palpate::test
