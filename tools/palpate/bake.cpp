@@ -30,6 +30,7 @@ struct Options {
   std::string image;
   std::string report;  ///< empty: none
   std::string engine;  ///< empty: as much as the other options allow
+  std::string support = "one-ring";
   double unit_scale = 1.0;
   bool repair = false;
   bool strict = false;
@@ -72,6 +73,7 @@ Baked bake_file(const Options& options) {
   bake::require_bakeable(check, checked, options.strict);
   bake::BakeOptions how = options.bake;
   how.engine = engine_of(options);
+  if (options.support == "grown") how.support = bake::SupportReading::grown;
   how.repaired = !out.repairs.empty();
   how.source_sha256 = read.sha256;
   out.bytes = bake::bake(read.mesh, check, how, progress, out.report);
@@ -173,6 +175,12 @@ void add_bake(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--repair", options->repair, "Mend what a safe repair can, see check");
   command->add_flag("--strict", options->strict, "Refuse a mesh whose faces cross one another");
+  command
+      ->add_option("--support-area", options->support,
+                   "Surface that supports a contact (D of eq. 7): the vertex's own faces, or those "
+                   "grown from them within the contact tolerance")
+      ->check(CLI::IsMember({"one-ring", "grown"}))
+      ->capture_default_str();
   add_stop_rules(*command, options->bake);
   add_requirements(*command, options->bake);
   command
