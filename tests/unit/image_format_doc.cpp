@@ -119,10 +119,11 @@ TEST(FormatPage, Section_and_its_slots_are_those_of_the_header) {
   const std::vector<Field> expected = {PALPATE_FIELD(S, offset), PALPATE_FIELD(S, count),
                                        PALPATE_FIELD(S, stride)};
   EXPECT_EQ(fields_of("## 3. Sections"), expected);
-  const std::vector<std::size_t> strides = {sizeof(image::Level),       sizeof(image::Piece),
-                                            sizeof(image::Vertex),      sizeof(std::uint32_t),
-                                            sizeof(std::uint32_t),      sizeof(image::Triangle),
-                                            sizeof(image::VirtualFace), sizeof(image::Vertex)};
+  const std::vector<std::size_t> strides = {
+      sizeof(image::Level),          sizeof(image::Piece),  sizeof(image::Vertex),
+      sizeof(std::uint32_t),         sizeof(std::uint32_t), sizeof(image::Triangle),
+      sizeof(image::VirtualFace),    sizeof(image::Vertex), sizeof(image::RegionNode),
+      sizeof(image::RegionTriangle), sizeof(image::Region)};
   std::vector<std::size_t> found;
   for (const auto& row : rows_of("## 3. Sections")) {
     if (row.size() == 4) found.push_back(std::stoul(row[2]));

@@ -188,7 +188,7 @@ TEST(Validate, NewerMinorVersion_with_a_further_section_loads) {
   AlignedBytes bytes = seal(rich_parts());
   image::Header header;
   std::memcpy(&header, bytes.data(), sizeof(header));
-  header.sections[9] = {bytes.size(), 5, 12};
+  header.sections[11] = {bytes.size(), 5, 12};
   bytes.resize(bytes.size() + 64);
   header.total_bytes = bytes.size();
   std::memcpy(bytes.data(), &header, sizeof(header));
@@ -206,7 +206,7 @@ TEST(Validate, HeaderFields_out_of_range_are_refused) {
   constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
   const std::vector<std::function<void(H&)>> changes = {
       [](H& h) { h.header_bytes = 511; },
-      [](H& h) { h.flags = 8; },
+      [](H& h) { h.flags = 16; },
       [](H& h) { h.flags = 2; },
       [](H& h) { h.flags = 4; },
       [](H& h) { h.source_boundary_edges = 1; },
