@@ -12,6 +12,8 @@ constexpr double kLeast = 1e-18;
 constexpr double kMost = 1e18;
 
 constexpr std::string_view kEngines[] = {"levels", "regions"};
+constexpr std::string_view kBounds[] = {"tight", "paper"};
+constexpr std::string_view kOrders[] = {"deviation", "nearest", "ratio"};
 constexpr std::string_view kRoles[] = {"tool", "moved", "fixed"};
 
 constexpr Key<Scene> kEngineKeys[] = {
@@ -25,6 +27,10 @@ constexpr Key<Scene> kEngineKeys[] = {
      "contact tolerance: features nearer than this are contacts"},
     {"s0", "1", Real<Scene>{[](Scene& s) -> double& { return s.settings.s0; }, 0, 1e6},
      "detail felt less than this is left out; relative to the radius of the body that loses it"},
+    {"kappa", "1",
+     OptionalReal<Scene>{[](Scene& s) -> std::optional<double>& { return s.kappa; }, 0, 1e6},
+     "surfaces deviating by more than this share of `delta_m` are refined, whatever `s0` says; "
+     "absent: `s0` alone decides"},
     {"exact", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.exact; }},
      "refine everything nearer than `delta_m` to the original surface, whatever `s0` says"},
     {"force_tolerance_N", "N",
@@ -32,6 +38,18 @@ constexpr Key<Scene> kEngineKeys[] = {
      "`regions`: refinement ends once the certified error of the force is no more"},
     {"interpolate", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.interpolate; }},
      "blend between levels of detail, so that the force has no steps"},
+    {"bounds", "",
+     Choice<Scene>{kBounds,
+                   [](Scene& s, std::size_t i) { s.settings.bounds = static_cast<Bounds>(i); },
+                   [](const Scene& s) { return static_cast<std::size_t>(s.settings.bounds); }},
+     "what culls pairs of pieces: `tight` hulls of the original surface below them, or the "
+     "`paper`'s, their own hulls widened"},
+    {"order", "",
+     Choice<Scene>{kOrders,
+                   [](Scene& s, std::size_t i) { s.settings.order = static_cast<Order>(i); },
+                   [](const Scene& s) { return static_cast<std::size_t>(s.settings.order); }},
+     "what is refined first: the largest weighted surface `deviation`, the `nearest`, or the "
+     "largest `ratio` of the two"},
     {"budget_us", "µs",
      OptionalReal<Scene>{[](Scene& s) -> std::optional<double>& { return s.budget_us; }, 0, 1e9},
      "time after which one tick stops refining; absent: unlimited in replay, chosen from the rate "

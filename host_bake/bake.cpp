@@ -70,7 +70,8 @@ image::Header facts_of(const NormalMesh& mesh, const CheckReport& check,
   };
   facts.flags = flag(options.repaired, image::HeaderFlag::repaired) |
                 flag(check.boundary_edges > 0, image::HeaderFlag::open) |
-                flag(check.crossings > 0, image::HeaderFlag::self_crossing);
+                flag(check.crossings > 0, image::HeaderFlag::self_crossing) |
+                flag(options.support == SupportReading::grown, image::HeaderFlag::grown_support);
   std::copy(options.source_sha256.begin(), options.source_sha256.end(), facts.source_sha256);
   std::copy(mesh.centre_m.begin(), mesh.centre_m.end(), facts.centre_m);
   facts.radius_m = mesh.radius_m;
@@ -191,7 +192,7 @@ std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const Ba
   });
   const Metrics metrics = timed(report, "metrics", [&] {
     return measure(tree, simplified.levels, simplified.deviations,
-                   support_areas(normal, normals, options.delta_rel), progress);
+                   support_areas(normal, normals, options.delta_rel, options.support), progress);
   });
   const RegionTree regions = timed(report, "regions", [&] {
     return options.engine == ForEngine::levels

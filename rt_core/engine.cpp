@@ -40,6 +40,7 @@ bool at_least(double v, double least) noexcept { return v >= least; }  // false 
 
 bool sound(const Settings& s) noexcept {
   return finite(s.delta_m) && s.delta_m > 0 && finite(s.s0) && at_least(s.s0, 0) &&
+         at_least(s.kappa, 0) && s.bounds <= Bounds::paper && s.order <= Order::ratio &&
          finite(s.stiffness_N_per_m) && at_least(s.stiffness_N_per_m, 0) &&
          finite(s.cluster_radius_m) && at_least(s.cluster_radius_m, 0) &&
          finite(s.force_tolerance_N) && at_least(s.force_tolerance_N, 0) &&
@@ -149,6 +150,35 @@ bool normalise(const Pose& in, Pose& out) noexcept {
   return true;
 }
 
+/// Does an image without its finest levels serve these settings against this partner?
+bool serves(const ImageView& image, const ImageView& partner, const Settings& settings) noexcept {
+  const image::Header& header = *image.header;
+  if (header.dropped_levels == 0) return true;
+  const image::Level& finest = image.levels[0];
+  const double ratio = partner.header->radius_m / header.radius_m;
+  const double area = static_cast<double>(partner.levels[0].min_support_area_rel) * ratio * ratio;
+  const double s_m = static_cast<double>(finest.max_surface_deviation_rel) * header.radius_m;
+  return !settings.exact && settings.s0 >= static_cast<double>(header.s0_min) &&
+         area >= static_cast<double>(header.partner_area) &&
+         (s_m <= settings.kappa * settings.delta_m);
+}
+
+bool serve(const Engine& engine, const Settings& settings) noexcept {
+  if (settings.engine != EngineKind::levels) return true;
+  for (const levels::PairState& pair : engine.states) {
+    if (!serves(*pair.image_a, *pair.image_b, settings) ||
+        !serves(*pair.image_b, *pair.image_a, settings)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+levels::Rules rules_of(const Settings& settings) noexcept {
+  return {settings.exact, settings.interpolate, settings.bounds,
+          settings.order, settings.s0,          settings.kappa};
+}
+
 double largest_unit_m(std::span<const levels::PairState> pairs) noexcept {
   double unit = 0;
   for (const levels::PairState& pair : pairs) unit = pair.unit_m > unit ? pair.unit_m : unit;
@@ -164,12 +194,14 @@ std::uint64_t smoothed(std::uint64_t before_ns, std::uint64_t now_ns) noexcept {
 
 /// What both queries say of their answer.
 template <class QueryResult>
-Certificate certify(const QueryResult& found, double delta_m, double unit_m) noexcept {
+Certificate certify(const QueryResult& found, double upper_m, double delta_m,
+                    double unit_m) noexcept {
   Certificate c;
   const double nearest =
       found.contacts > 0 && found.min_distance_m < delta_m ? found.min_distance_m : delta_m;
-  const double open = found.unresolved_lower_m < nearest ? nearest - found.unresolved_lower_m : 0;
-  c.error_bound_m = open + found.capped_gap_m + kNumericalError * unit_m;
+  const double below = found.unresolved_lower_m < nearest ? nearest - found.unresolved_lower_m : 0;
+  const double above = found.contacts > 0 && upper_m > nearest ? upper_m - nearest : 0;
+  c.error_bound_m = (below > above ? below : above) + found.capped_gap_m + kNumericalError * unit_m;
   c.s_worst = found.s_worst;
   c.truncated_by_time = found.truncated_by_time;
   c.truncated_by_units = found.truncated_by_units;
@@ -188,9 +220,12 @@ struct Found {
 };
 
 Found find_by_levels(Engine& engine, Meter& meter) noexcept {
-  const levels::QueryResult found = levels::query(engine.levels, meter);
+  const levels::QueryResult found = levels::query(engine.levels, rules_of(engine.settings), meter);
+  if (found.queries > 0) {
+    engine.levels.query_ns = smoothed(engine.levels.query_ns, meter.refined_ns() / found.queries);
+  }
   return {found.contacts, found.min_distance_m, engine.levels.tree.front().size(), found.queries,
-          certify(found, engine.settings.delta_m, largest_unit_m(engine.states))};
+          certify(found, found.upper_m, engine.settings.delta_m, largest_unit_m(engine.states))};
 }
 
 bool limited(const Budget& budget) noexcept {
@@ -206,7 +241,7 @@ Found find_by_regions(Engine& engine, const Budget& budget, Meter& meter) noexce
   }
   const regions::QueryResult found = regions::query(engine.regions, demand, meter);
   Found out{found.contacts, found.min_distance_m, found.near_regions, found.queries,
-            certify(found, s.delta_m, largest_unit_m(engine.states))};
+            certify(found, found.min_distance_m, s.delta_m, largest_unit_m(engine.states))};
   out.certificate.force_bound_N = s.stiffness_N_per_m * found.open_m;
   return out;
 }
@@ -264,12 +299,14 @@ Status create(const Scene& scene, const Settings& settings, const Limits& limits
   } else {
     begin_regions(scene, engine->regions);
   }
+  if (!serve(*engine, settings)) return Status::image_too_coarse;
   out_engine = engine;
   return Status::ok;
 }
 
 Status configure(Engine& engine, const Settings& settings) noexcept {
   if (!sound(settings) || settings.engine != engine.settings.engine) return Status::bad_argument;
+  if (!serve(engine, settings)) return Status::image_too_coarse;
   engine.settings = settings;
   return Status::ok;
 }

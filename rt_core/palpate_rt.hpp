@@ -41,14 +41,32 @@ enum class EngineKind : std::uint8_t {
   regions,  ///< certified bounds of the distance of regions of a's original surface from b
 };
 
+/// What bounds the original surface below a pair of pieces (levels engine).
+enum class Bounds : std::uint8_t {
+  tight,  ///< culling hulls and their residuals
+  paper,  ///< the pieces' own hulls, widened by h (eq. 5)
+};
+
+/// What is refined first while the budget lasts (levels engine).
+enum class Order : std::uint8_t {
+  deviation,  ///< the largest weighted surface deviation s* (the paper's time-critical mode)
+  nearest,    ///< the least distance
+  ratio,      ///< the largest s* over distance
+};
+
 /// How contacts are found and turned into forces.
 struct Settings {
   EngineKind engine = EngineKind::levels;  ///< fixed when the engine is made
   double delta_m =
-      0.0005;          ///< contact tolerance delta: features nearer than this are contacts; > 0
-  double s0 = 0.025;   ///< threshold of eq. 7, relative to the radius of the body that loses the
-                       ///< detail; >= 0
+      0.0005;         ///< contact tolerance delta: features nearer than this are contacts; > 0
+  double s0 = 0.025;  ///< threshold of eq. 7, relative to the radius of the body that loses the
+                      ///< detail; >= 0
+  /// Surface deviation allowed, relative to delta: pieces with s > kappa * delta are refined,
+  /// whatever s0 says; this bounds the error of force. >= 0; infinity: no such rule.
+  double kappa = std::numeric_limits<double>::infinity();
   bool exact = false;  ///< refine every pair below delta to the original surface, whatever s0 says
+  Bounds bounds = Bounds::tight;
+  Order order = Order::deviation;  ///< exact queries always go nearest first
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
   /// Regions engine: refinement may end once the certified error of the force is no more; 0: exact.
   double force_tolerance_N = 0;
@@ -131,12 +149,14 @@ class Engine;
                                          EngineKind engine = EngineKind::levels) noexcept;
 
 /// Makes an engine inside `memory` (64-byte aligned, at least required_bytes). It needs no
-/// destruction: drop the memory. Errors: bad_argument, not_enough_memory, image_missing_section.
+/// destruction: drop the memory. Errors: bad_argument, not_enough_memory, image_missing_section,
+/// image_too_coarse.
 /// Touches every byte of the memory it will use.
 Status create(const Scene& scene, const Settings& settings, const Limits& limits,
               std::span<std::byte> memory, Engine*& out_engine) noexcept;
 
-/// Replaces the settings between ticks; the kind of engine stays. Errors: bad_argument (nothing is
+/// Replaces the settings between ticks; the kind of engine stays. Errors: bad_argument,
+/// image_too_coarse (nothing is
 /// changed).
 Status configure(Engine& engine, const Settings& settings) noexcept;
 
