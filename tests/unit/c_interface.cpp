@@ -150,16 +150,16 @@ TEST(CInterface, page_shows_the_loop_that_is_tested) {
 
 }  // namespace
 
+}  // namespace palpate::test
+
 extern "C" int read_device(palpate_pose* tool) {
-  if (g_tick == kTicks) return 0;
-  *tool = c_pose_of(pose_of(g_tick++));
+  if (palpate::test::g_tick == palpate::test::kTicks) return 0;
+  *tool = palpate::test::c_pose_of(palpate::test::pose_of(palpate::test::g_tick++));
   return 1;
 }
 
 extern "C" void push_device(const double force_N[3], const double[3]) {
-  g_pushed.push_back({force_N[0], force_N[1], force_N[2]});
+  palpate::test::g_pushed.push_back({force_N[0], force_N[1], force_N[2]});
 }
 
 extern "C" uint64_t cycle_ns(void*) { return 0; }
-
-}  // namespace palpate::test
