@@ -59,7 +59,8 @@ struct Scene {
   /// [engine] and [force]. Unlike the engine's own defaults the wrench is limited: a scene may
   /// drive a device.
   Settings settings{.max_force_N = 3.0, .max_torque_Nm = 0.1};
-  Limits limits;  ///< [limits]
+  Limits limits;                ///< [limits]
+  std::optional<double> kappa;  ///< absent: no such rule
   double max_memory_MB =
       1000.0;  ///< [limits], 1 MB = 10^6 bytes: a scene that needs more is refused
   std::optional<double> budget_us;  ///< of one tick; absent: unlimited in replay

@@ -12,6 +12,8 @@ constexpr double kLeast = 1e-18;
 constexpr double kMost = 1e18;
 
 constexpr std::string_view kEngines[] = {"levels", "regions"};
+constexpr std::string_view kBounds[] = {"tight", "paper"};
+constexpr std::string_view kOrders[] = {"deviation", "nearest", "ratio"};
 constexpr std::string_view kRoles[] = {"tool", "moved", "fixed"};
 
 constexpr Key<Scene> kEngineKeys[] = {
@@ -25,6 +27,10 @@ constexpr Key<Scene> kEngineKeys[] = {
      "contact tolerance: features nearer than this are contacts"},
     {"s0", "1", Real<Scene>{[](Scene& s) -> double& { return s.settings.s0; }, 0, 1e6},
      "detail felt less than this is left out; relative to the radius of the body that loses it"},
+    {"kappa", "1",
+     OptionalReal<Scene>{[](Scene& s) -> std::optional<double>& { return s.kappa; }, 0, 1e6},
+     "surfaces deviating by more than this share of `delta_m` are refined, whatever `s0` says; "
+     "absent: `s0` alone decides"},
     {"exact", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.exact; }},
      "refine everything nearer than `delta_m` to the original surface, whatever `s0` says"},
     {"force_tolerance_N", "N",
@@ -32,6 +38,18 @@ constexpr Key<Scene> kEngineKeys[] = {
      "`regions`: refinement ends once the certified error of the force is no more"},
     {"interpolate", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.interpolate; }},
      "blend between levels of detail, so that the force has no steps"},
+    {"bounds", "",
+     Choice<Scene>{kBounds,
+                   [](Scene& s, std::size_t i) { s.settings.bounds = static_cast<Bounds>(i); },
+                   [](const Scene& s) { return static_cast<std::size_t>(s.settings.bounds); }},
+     "what culls pairs of pieces: `tight` hulls of the original surface below them, or the "
+     "`paper`'s, their own hulls widened"},
+    {"order", "",
+     Choice<Scene>{kOrders,
+                   [](Scene& s, std::size_t i) { s.settings.order = static_cast<Order>(i); },
+                   [](const Scene& s) { return static_cast<std::size_t>(s.settings.order); }},
+     "what is refined first: the largest weighted surface `deviation`, the `nearest`, or the "
+     "largest `ratio` of the two"},
     {"budget_us", "µs",
      OptionalReal<Scene>{[](Scene& s) -> std::optional<double>& { return s.budget_us; }, 0, 1e9},
      "time after which one tick stops refining; absent: unlimited in replay, chosen from the rate "
@@ -41,10 +59,10 @@ constexpr Key<Scene> kEngineKeys[] = {
 constexpr Key<Scene> kForceKeys[] = {
     {"stiffness_N_per_m", "N/m",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.stiffness_N_per_m; }, 0, kMost},
-     "of the penalty force of one cluster of contacts"},
+     "of the penalty force in any one direction, however many contacts push that way"},
     {"cluster_radius_m", "m",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.cluster_radius_m; }, 0, kMost},
-     "contacts nearer than this to the deepest one of a cluster belong to it"},
+     "contacts nearer together than this count as one where the force is shared out"},
     {"max_force_N", "N",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.max_force_N; }, 0, kMost},
      "the force on the tool is scaled down to this length"},
@@ -62,7 +80,7 @@ constexpr Key<Scene> kLimitKeys[] = {
      "room for contacts of one tick, over all pairs"},
     {"clusters", "",
      Count<Scene>{[](Scene& s) -> std::uint32_t& { return s.limits.clusters; }, 1, 1u << 16},
-     "room for clusters of contacts of one tick, over all pairs"},
+     "room for grid points of `cluster_radius_m` near contacts of one tick, over all pairs"},
     {"max_memory_MB", "MB",
      Real<Scene>{[](Scene& s) -> double& { return s.max_memory_MB; }, 0.001, 1e6},
      "images and engine together may take this much memory (1 MB = 10^6 bytes); a scene that needs "

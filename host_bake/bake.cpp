@@ -70,7 +70,8 @@ image::Header facts_of(const NormalMesh& mesh, const CheckReport& check,
   };
   facts.flags = flag(options.repaired, image::HeaderFlag::repaired) |
                 flag(check.boundary_edges > 0, image::HeaderFlag::open) |
-                flag(check.crossings > 0, image::HeaderFlag::self_crossing);
+                flag(check.crossings > 0, image::HeaderFlag::self_crossing) |
+                flag(options.support == SupportReading::grown, image::HeaderFlag::grown_support);
   std::copy(options.source_sha256.begin(), options.source_sha256.end(), facts.source_sha256);
   std::copy(mesh.centre_m.begin(), mesh.centre_m.end(), facts.centre_m);
   facts.radius_m = mesh.radius_m;
@@ -92,6 +93,14 @@ void require_valid(const std::vector<std::byte>& bytes) {
   const Status status = validate(copy.bytes(), view);
   if (status != Status::ok)
     throw std::logic_error(std::string("the baked image is not valid: ") + describe(status));
+}
+
+// Of level 0. An edge's own normals may see it shorter or longer than the vertex does into which it
+// is collapsed; r does not rise on the way up.
+float resolution_of_original(const NormalMesh& mesh, const std::vector<Vec3d>& normals,
+                             const std::vector<SimplifiedLevel>& levels) {
+  const float own = finest_resolution(mesh, normals);
+  return levels.empty() ? own : std::max(own, static_cast<float>(levels.front().resolution));
 }
 
 struct Simplified {
@@ -184,14 +193,15 @@ std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const Ba
     return measure_deviation(normal, options.stop_deviation_rel, progress, simplified), 0;
   });
   const Hierarchy tree = timed(report, "merge", [&] {
-    Hierarchy growing = level_zero(normal, patches, finest_resolution(normal, normals));
+    Hierarchy growing =
+        level_zero(normal, patches, resolution_of_original(normal, normals, simplified.levels));
     for (const SimplifiedLevel& level : simplified.levels) add_level(growing, level);
     merge_to_root(growing, progress);
     return growing;
   });
   const Metrics metrics = timed(report, "metrics", [&] {
     return measure(tree, simplified.levels, simplified.deviations,
-                   support_areas(normal, normals, options.delta_rel), progress);
+                   support_areas(normal, normals, options.delta_rel, options.support), progress);
   });
   const RegionTree regions = timed(report, "regions", [&] {
     return options.engine == ForEngine::levels

@@ -12,6 +12,7 @@
 #include "host_bake/base/error.hpp"
 #include "host_bake/mesh/check.hpp"
 #include "host_bake/mesh/mesh.hpp"
+#include "host_bake/metrics/support_area.hpp"
 #include "host_bake/simplify/simplify.hpp"
 #include "rt_core/image/view.hpp"
 
@@ -29,6 +30,7 @@ struct BakeOptions {
   ForEngine engine = ForEngine::levels;
   double delta_rel =
       0.01;  ///< contact tolerance that the metrics are made for, relative to the radius
+  SupportReading support = SupportReading::one_ring;
   /// Stop rules of simplification, recorded in the image. The first that applies ends it.
   SimplifyOptions stop;
   double stop_deviation_rel = 0;  ///< no level whose s passes this; 0: no such rule

@@ -4,7 +4,7 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/meter.hpp"
-#include "rt_core/force/cluster.hpp"
+#include "rt_core/force/penalty.hpp"
 #include "rt_core/levels/levels_engine.hpp"
 #include "rt_core/palpate_rt.hpp"
 #include "rt_core/regions/regions_engine.hpp"
@@ -22,8 +22,7 @@ class Engine {
   levels::QueryMemory levels;           // of the engine's kind; the other is empty
   regions::QueryMemory regions;
   std::span<Contact> contacts;
-  std::span<force::Ranked> ranking;
-  std::span<force::Cluster> clusters;
+  force::Workspace force;
   std::uint64_t tail_ns = 0;  // what ticks take from the end of refinement to their own, smoothed
 };
 
@@ -40,6 +39,7 @@ bool at_least(double v, double least) noexcept { return v >= least; }  // false 
 
 bool sound(const Settings& s) noexcept {
   return finite(s.delta_m) && s.delta_m > 0 && finite(s.s0) && at_least(s.s0, 0) &&
+         at_least(s.kappa, 0) && s.bounds <= Bounds::paper && s.order <= Order::ratio &&
          finite(s.stiffness_N_per_m) && at_least(s.stiffness_N_per_m, 0) &&
          finite(s.cluster_radius_m) && at_least(s.cluster_radius_m, 0) &&
          finite(s.force_tolerance_N) && at_least(s.force_tolerance_N, 0) &&
@@ -104,8 +104,9 @@ Engine* lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKi
   const auto states = arena.array<levels::PairState>(scene.pairs.size());
   const auto poses = arena.array<Pose>(scene.bodies.size());
   const auto contacts = arena.array<Contact>(limits.contacts);
+  const auto felt = arena.array<force::Felt>(limits.contacts);
   const auto ranking = arena.array<force::Ranked>(limits.contacts);
-  const auto clusters = arena.array<force::Cluster>(limits.clusters);
+  const auto places = arena.array<force::Place>(limits.clusters);
   levels::QueryMemory levels;
   regions::QueryMemory regions;
   if (kind == EngineKind::levels) {
@@ -118,8 +119,7 @@ Engine* lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKi
   e.poses = poses;
   e.states = states;
   e.contacts = contacts;
-  e.ranking = ranking;
-  e.clusters = clusters;
+  e.force = {felt, ranking, force::Places(places)};
   e.levels = levels;
   e.regions = regions;
   e.levels.pairs = e.regions.pairs = states;
@@ -149,6 +149,35 @@ bool normalise(const Pose& in, Pose& out) noexcept {
   return true;
 }
 
+/// Does an image without its finest levels serve these settings against this partner?
+bool serves(const ImageView& image, const ImageView& partner, const Settings& settings) noexcept {
+  const image::Header& header = *image.header;
+  if (header.dropped_levels == 0) return true;
+  const image::Level& finest = image.levels[0];
+  const double ratio = partner.header->radius_m / header.radius_m;
+  const double area = static_cast<double>(partner.levels[0].min_support_area_rel) * ratio * ratio;
+  const double s_m = static_cast<double>(finest.max_surface_deviation_rel) * header.radius_m;
+  return !settings.exact && settings.s0 >= static_cast<double>(header.s0_min) &&
+         area >= static_cast<double>(header.partner_area) &&
+         (s_m <= settings.kappa * settings.delta_m);
+}
+
+bool serve(const Engine& engine, const Settings& settings) noexcept {
+  if (settings.engine != EngineKind::levels) return true;
+  for (const levels::PairState& pair : engine.states) {
+    if (!serves(*pair.image_a, *pair.image_b, settings) ||
+        !serves(*pair.image_b, *pair.image_a, settings)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+levels::Rules rules_of(const Settings& settings) noexcept {
+  return {settings.exact, settings.interpolate, settings.bounds,
+          settings.order, settings.s0,          settings.kappa};
+}
+
 double largest_unit_m(std::span<const levels::PairState> pairs) noexcept {
   double unit = 0;
   for (const levels::PairState& pair : pairs) unit = pair.unit_m > unit ? pair.unit_m : unit;
@@ -164,12 +193,14 @@ std::uint64_t smoothed(std::uint64_t before_ns, std::uint64_t now_ns) noexcept {
 
 /// What both queries say of their answer.
 template <class QueryResult>
-Certificate certify(const QueryResult& found, double delta_m, double unit_m) noexcept {
+Certificate certify(const QueryResult& found, double upper_m, double delta_m,
+                    double unit_m) noexcept {
   Certificate c;
   const double nearest =
       found.contacts > 0 && found.min_distance_m < delta_m ? found.min_distance_m : delta_m;
-  const double open = found.unresolved_lower_m < nearest ? nearest - found.unresolved_lower_m : 0;
-  c.error_bound_m = open + found.capped_gap_m + kNumericalError * unit_m;
+  const double below = found.unresolved_lower_m < nearest ? nearest - found.unresolved_lower_m : 0;
+  const double above = found.contacts > 0 && upper_m > nearest ? upper_m - nearest : 0;
+  c.error_bound_m = (below > above ? below : above) + found.capped_gap_m + kNumericalError * unit_m;
   c.s_worst = found.s_worst;
   c.truncated_by_time = found.truncated_by_time;
   c.truncated_by_units = found.truncated_by_units;
@@ -188,9 +219,12 @@ struct Found {
 };
 
 Found find_by_levels(Engine& engine, Meter& meter) noexcept {
-  const levels::QueryResult found = levels::query(engine.levels, meter);
+  const levels::QueryResult found = levels::query(engine.levels, rules_of(engine.settings), meter);
+  if (found.queries > 0) {
+    engine.levels.query_ns = smoothed(engine.levels.query_ns, meter.refined_ns() / found.queries);
+  }
   return {found.contacts, found.min_distance_m, engine.levels.tree.front().size(), found.queries,
-          certify(found, engine.settings.delta_m, largest_unit_m(engine.states))};
+          certify(found, found.upper_m, engine.settings.delta_m, largest_unit_m(engine.states))};
 }
 
 bool limited(const Budget& budget) noexcept {
@@ -206,7 +240,7 @@ Found find_by_regions(Engine& engine, const Budget& budget, Meter& meter) noexce
   }
   const regions::QueryResult found = regions::query(engine.regions, demand, meter);
   Found out{found.contacts, found.min_distance_m, found.near_regions, found.queries,
-            certify(found, s.delta_m, largest_unit_m(engine.states))};
+            certify(found, found.min_distance_m, s.delta_m, largest_unit_m(engine.states))};
   out.certificate.force_bound_N = s.stiffness_N_per_m * found.open_m;
   return out;
 }
@@ -264,12 +298,14 @@ Status create(const Scene& scene, const Settings& settings, const Limits& limits
   } else {
     begin_regions(scene, engine->regions);
   }
+  if (!serve(*engine, settings)) return Status::image_too_coarse;
   out_engine = engine;
   return Status::ok;
 }
 
 Status configure(Engine& engine, const Settings& settings) noexcept {
   if (!sound(settings) || settings.engine != engine.settings.engine) return Status::bad_argument;
+  if (!serve(engine, settings)) return Status::image_too_coarse;
   engine.settings = settings;
   return Status::ok;
 }
@@ -292,18 +328,17 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
 
   const std::span<Contact> contacts = engine.contacts.first(found.contacts);
   out.contacts = contacts;
-  bool clusters_used_up = false;
-  out.clusters = force::cluster(contacts, settings.cluster_radius_m, engine.ranking,
-                                engine.clusters, clusters_used_up);
-  out.wrench = force::penalty_wrench(contacts, engine.clusters.first(out.clusters), engine.pairs,
-                                     engine.tool, engine.poses[engine.tool].position_m, settings);
+  const force::Penalty penalty = force::penalty(contacts, engine.pairs, engine.tool,
+                                                engine.poses[engine.tool], settings, engine.force);
+  out.wrench = force::limited(penalty.wrench, settings);
+  out.clusters = static_cast<std::uint32_t>(penalty.directions + 0.5);
   out.min_distance_m =
       found.contacts > 0 ? found.min_distance_m : std::numeric_limits<double>::quiet_NaN();
   out.front_nodes = found.front_nodes;
   out.queries = found.queries;
   out.certificate = found.certificate;
   out.certificate.units_used = meter.used();
-  out.certificate.truncated_by_memory |= clusters_used_up;
+  out.certificate.truncated_by_memory |= penalty.places_full;
   engine.tail_ns = smoothed(engine.tail_ns, meter.tail_ns());
   return Status::ok;
 }

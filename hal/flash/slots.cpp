@@ -96,7 +96,7 @@ SlotState Slots::state(std::uint8_t slot) const noexcept {
   if (!committed || !is_header(header)) return out;
   const auto image_bytes = get<std::uint32_t>(header, kImageBytesAt);
   if (image_bytes > layout_.capacity()) return out;
-  const auto image = flash_.bytes().subspan(offset_of(slot) + layout_.erase_bytes, image_bytes);
+  const auto image = flash_.bytes().subspan(image_offset(slot), image_bytes);
   ImageView view;
   if (validate(image, view) != Status::ok) return out;
 
@@ -133,9 +133,21 @@ UpdateStatus Slots::write(std::span<const std::byte> bytes) noexcept {
     abort();
     return UpdateStatus::too_large;
   }
-  for (const std::byte b : bytes) {
-    buffer_[buffered_++] = b;
+  while (!bytes.empty()) {
+    // Whole units go from where they are; the buffer is for what a block leaves over.
+    const std::size_t whole = buffered_ == 0 ? bytes.size() / kProgramBytes * kProgramBytes : 0;
+    if (whole > 0) {
+      if (!flash_.program(image_offset(updating_) + written_, bytes.first(whole))) {
+        abort();
+        return UpdateStatus::write_failed;
+      }
+      written_ += static_cast<std::uint32_t>(whole);
+      bytes = bytes.subspan(whole);
+      continue;
+    }
+    buffer_[buffered_++] = bytes.front();
     ++written_;
+    bytes = bytes.subspan(1);
     if (buffered_ < kProgramBytes) continue;
     const UpdateStatus status = flush();
     if (status != UpdateStatus::ok) return status;
@@ -150,7 +162,7 @@ UpdateStatus Slots::finish() noexcept {
   const std::uint8_t slot = updating_;
   abort();
   const std::uint32_t at = offset_of(slot);
-  const auto image = flash_.bytes().subspan(at + layout_.erase_bytes, written_);
+  const auto image = flash_.bytes().subspan(image_offset(slot), written_);
   ImageView view;
   if (validate(image, view) != Status::ok) return UpdateStatus::not_an_image;
   const bool recorded =
@@ -164,7 +176,7 @@ UpdateStatus Slots::flush() noexcept {
   for (std::size_t i = buffered_; i < kProgramBytes; ++i) buffer_[i] = kErased;
   const std::uint32_t behind = written_ - static_cast<std::uint32_t>(buffered_);
   buffered_ = 0;
-  if (flash_.program(offset_of(updating_) + layout_.erase_bytes + behind, buffer_)) {
+  if (flash_.program(image_offset(updating_) + behind, buffer_)) {
     return UpdateStatus::ok;
   }
   abort();

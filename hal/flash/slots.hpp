@@ -112,6 +112,9 @@ class Slots {
   [[nodiscard]] std::uint32_t offset_of(std::uint8_t slot) const noexcept {
     return slot * layout_.slot_bytes();
   }
+  [[nodiscard]] std::uint32_t image_offset(std::uint8_t slot) const noexcept {
+    return offset_of(slot) + layout_.erase_bytes;
+  }
   [[nodiscard]] std::span<const std::byte> record_of(std::uint8_t slot) const noexcept;
   [[nodiscard]] std::uint64_t newest_sequence() const noexcept;
   UpdateStatus flush() noexcept;

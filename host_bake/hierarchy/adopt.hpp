@@ -16,7 +16,7 @@ namespace palpate::bake {
 /// least in mean width when it has to hold everything below the child: among the patch it was
 /// merged into, those that own what became of its faces, and the neighbours of all of these. Each
 /// patch keeps one child that was merged into it, the one that fits best. Measured on a jaw of
-/// 40,180 triangles, this takes h of the first levels to a half.
+/// 40,180 triangles, this lowers the mean h of the first levels by a fifth to a third.
 ///
 /// Parallel; the same whatever the number of threads. O(n log n) in the faces of both levels.
 std::vector<std::uint32_t> choose_parents(const Hierarchy& tree, const SimplifiedLevel& level);

@@ -34,13 +34,12 @@ void erase_front(std::vector<T>& v, std::size_t count) {
 std::optional<float> served_s0(const Hierarchy& tree, const Metrics& metrics, std::uint32_t dropped,
                                float partner_area) {
   if (dropped == 0) return 0.0f;
-  const std::uint32_t stop = dropped + 1;
-  if (stop >= tree.levels.size() || tree.levels[stop].free) return {};
+  if (dropped >= tree.levels.size() || tree.levels[dropped].free) return {};
   double most = static_cast<double>(std::numeric_limits<float>::min());
   for (std::size_t i = 0; i < tree.pieces.size(); ++i) {
-    if (tree.pieces[i].level != stop) continue;
-    most = std::max(most, largest_weighted_deviation(tree, metrics, i,
-                                                     static_cast<double>(partner_area)));
+    if (tree.pieces[i].level != dropped) continue;
+    most = std::max(
+        most, largest_weighted_deviation(tree, metrics, i, static_cast<double>(partner_area)));
   }
   return std::nextafter(static_cast<float>(most), std::numeric_limits<float>::infinity());
 }

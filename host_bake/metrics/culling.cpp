@@ -20,8 +20,7 @@ std::array<Eigen::Vector3d, image::kMaxCullingVertices> even_directions() {
   constexpr double kGoldenAngle = 2.399963229728653;
   std::array<Eigen::Vector3d, image::kMaxCullingVertices> directions;
   for (std::size_t i = 0; i < directions.size(); ++i) {
-    const double z =
-        1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(directions.size());
+    const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(directions.size());
     const double across = std::sqrt(1 - z * z);
     const double turn = kGoldenAngle * static_cast<double>(i);
     directions[i] = {across * std::cos(turn), across * std::sin(turn), z};
@@ -45,8 +44,8 @@ Eigen::Matrix3d whitening(std::span<const PointF> points) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
   // Flat sets have a smallest extent of 0: a floor keeps the map finite.
   constexpr double kLeastShare = 1e-12;
-  const Eigen::Vector3d spread = solver.eigenvalues().cwiseMax(
-      std::max(kLeastShare * solver.eigenvalues()[2], 1e-30));
+  const Eigen::Vector3d spread =
+      solver.eigenvalues().cwiseMax(std::max(kLeastShare * solver.eigenvalues()[2], 1e-30));
   const Eigen::Vector3d inverse = spread.cwiseSqrt().cwiseInverse();
   return solver.eigenvectors() * inverse.asDiagonal();
 }

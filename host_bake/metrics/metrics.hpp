@@ -14,10 +14,11 @@ namespace palpate::bake {
 /// For radius 1.
 struct Metrics {
   std::vector<Sphere> spheres;  ///< of each piece's hull and of all that is below the piece
-  std::vector<float> surface_deviation;  ///< s of each piece; 0 on free levels, which have no metric
-  std::vector<float> hausdorff;          ///< h of each piece
-  std::vector<CullingBound> culling;     ///< of each piece
-  std::vector<float> support_area;       ///< D of each point of the hierarchy
+  std::vector<float>
+      surface_deviation;              ///< s of each piece; 0 on free levels, which have no metric
+  std::vector<float> hausdorff;       ///< h of each piece
+  std::vector<CullingBound> culling;  ///< of each piece
+  std::vector<float> support_area;    ///< D of each point of the hierarchy
 };
 
 /// Measures a tree made of a mesh and these simplified levels. D of a vertex is the least D of the

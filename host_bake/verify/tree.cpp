@@ -42,7 +42,8 @@ Proof prove_sources_complete(const Evidence& evidence) {
 }
 
 Proof prove_deviation_ordered(const Evidence& evidence) {
-  return prove_each("s is 0 on the original surface and does not fall upward", evidence.hulls.size(),
+  return prove_each("s is 0 on the original surface and does not fall upward",
+                    evidence.hulls.size(),
                     [&](std::uint32_t i) { return deviation_out_of_order(evidence.image, i); });
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "rt_core/palpate_rt.hpp"
 
@@ -15,8 +16,9 @@ class Meter {
  public:
   Meter(const Budget& budget, std::uint64_t reserve_ns) noexcept : budget_(budget) {
     if (budget.clock_ns == nullptr) return;
-    const std::uint64_t start = now_ns();
-    const std::uint64_t half = budget.deadline_ns > start ? (budget.deadline_ns - start) / 2 : 0;
+    start_ns_ = tail_start_ns_ = now_ns();
+    const std::uint64_t half =
+        budget.deadline_ns > start_ns_ ? (budget.deadline_ns - start_ns_) / 2 : 0;
     stop_ns_ = budget.deadline_ns - (reserve_ns < half ? reserve_ns : half);
   }
 
@@ -28,6 +30,21 @@ class Meter {
     const std::uint64_t left = budget_.units > used_ ? budget_.units - used_ : 0;
     return static_cast<std::uint32_t>(left < kMost ? left : kMost);
   }
+  /// What units and time are expected to do for; infinity where neither is limited.
+  /// @param query_ns  time that one is expected to take; 0: unknown
+  [[nodiscard]] double queries_affordable(std::uint64_t query_ns) const noexcept {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
+    const double units =
+        budget_.units == kUnlimited ? kInfinity : static_cast<double>(queries_left());
+    if (budget_.clock_ns == nullptr || query_ns == 0) return units;
+    const std::uint64_t now = now_ns();
+    const double time = stop_ns_ > now ? static_cast<double>(stop_ns_ - now) : 0;
+    const double in_time = time / static_cast<double>(query_ns);
+    return in_time < units ? in_time : units;
+  }
+  /// From when the meter was made to begin_tail(); 0 without a clock.
+  [[nodiscard]] std::uint64_t refined_ns() const noexcept { return tail_start_ns_ - start_ns_; }
   [[nodiscard]] bool out_of_units() const noexcept { return used_ >= budget_.units; }
   [[nodiscard]] bool out_of_time() const noexcept {
     return budget_.clock_ns != nullptr && now_ns() >= stop_ns_;
@@ -49,6 +66,7 @@ class Meter {
 
   Budget budget_;
   std::uint64_t used_ = 0;
+  std::uint64_t start_ns_ = 0;
   std::uint64_t stop_ns_ = 0;
   std::uint64_t tail_start_ns_ = 0;
 };

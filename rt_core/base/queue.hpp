@@ -23,6 +23,8 @@ class MinQueue {
   }  ///< in heap order
   [[nodiscard]] const T& top() const noexcept { return storage_[0]; }
 
+  void clear() noexcept { size_ = 0; }
+
   void push(const T& item) noexcept {  ///< O(log n)
     PALPATE_ASSERT(size_ < storage_.size());
     std::size_t hole = size_++;

@@ -47,6 +47,8 @@ const char* describe(Status s) noexcept {
       return "less memory than required_bytes()";
     case Status::bad_pose:
       return "a pose is not finite or its quaternion not of unit length";
+    case Status::image_too_coarse:
+      return "the scene may need levels that were left out of an image";
   }
   return "unknown status";
 }

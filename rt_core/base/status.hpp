@@ -32,6 +32,9 @@ enum class [[nodiscard]] Status : std::uint16_t{
     bad_argument = 100,       ///< a null pointer, an empty scene, a number out of range
     not_enough_memory = 101,  ///< the memory given is smaller than required_bytes()
     bad_pose = 102,           ///< a pose is not finite or its quaternion not of unit length
+    /// the settings may refine to levels that were left out of an image: s0 below its s0_min, a
+    /// partner with smaller support areas than its partner_area, exact, or kappa
+    image_too_coarse = 103,
 };
 
 /// The name of a status, static storage, never null.

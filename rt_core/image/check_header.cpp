@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::uint32_t kKnownFlags = static_cast<std::uint32_t>(HeaderFlag::repaired) |
                                       static_cast<std::uint32_t>(HeaderFlag::open) |
-                                      static_cast<std::uint32_t>(HeaderFlag::self_crossing);
+                                      static_cast<std::uint32_t>(HeaderFlag::self_crossing) |
+                                      static_cast<std::uint32_t>(HeaderFlag::grown_support);
 
 // Bytes a record, by slot.
 constexpr std::uint32_t kStrides[] = {

@@ -46,7 +46,7 @@ bool take_adjacency(const ImageView& image, const Piece& piece, Cursor& cursor) 
 }
 
 bool take_runs(const ImageView& image, const Piece& piece, Cursor& cursor) noexcept {
-  return piece.hull_vertices >= 1 && piece.hull_vertices <= piece.vertices &&
+  return piece.culling_vertices <= kMaxCullingVertices && piece.hull_vertices >= 1 && piece.hull_vertices <= piece.vertices &&
          take(piece.first_vertex, piece.vertices, image.vertices.size(), cursor.vertices) &&
          take_adjacency(image, piece, cursor) &&
          take(piece.first_triangle, piece.triangles, image.triangles.size(), cursor.triangles) &&
@@ -81,7 +81,6 @@ bool words_sound(const Piece& piece, bool is_newer) noexcept {
 }
 
 bool culling_sound(const Piece& piece) noexcept {
-  if (piece.culling_vertices > kMaxCullingVertices) return false;
   return piece.culling_vertices == 0 ? piece.culling_residual == piece.hausdorff
                                      : within(piece.culling_residual, 0.0f, kMaxLength);
 }

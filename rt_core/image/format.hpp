@@ -84,6 +84,7 @@ enum class HeaderFlag : std::uint32_t {
   repaired = 1u << 0,       ///< the source was repaired before baking
   open = 1u << 1,           ///< the source has boundary edges: source_boundary_edges > 0
   self_crossing = 1u << 2,  ///< faces of the source cross one another: source_crossings > 0
+  grown_support = 1u << 3,  ///< support areas are of faces grown within delta, not of the 1-ring
 };
 
 struct Header {

@@ -3,16 +3,14 @@
 
 #include <limits>
 
+#include "rt_core/levels/rules.hpp"
+
 namespace palpate::levels {
 namespace {
 
 using image::Piece;
 using image::PieceFlag;
 using image::Triangle;
-
-constexpr bool has(const Piece& piece, PieceFlag flag) noexcept {
-  return (piece.flags & static_cast<std::uint32_t>(flag)) != 0;
-}
 
 Vec3d position(const image::Vertex& v) noexcept {
   return {static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),

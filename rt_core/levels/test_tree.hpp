@@ -12,17 +12,27 @@ namespace palpate::levels {
 
 inline constexpr std::uint32_t kNone = image::kNone;
 
+/// Node::flags.
+inline constexpr std::uint8_t kMeasured = 1;  ///< this tick
+inline constexpr std::uint8_t kStopped = 2;  ///< this tick: near, and no detail missing can be felt
+inline constexpr std::uint8_t kRefineA = 4;  ///< this tick: near, and a is to be refined
+inline constexpr std::uint8_t kRefineB = 8;
+inline constexpr std::uint8_t kOfThisTick = kMeasured | kStopped | kRefineA | kRefineB;
+
 /// A pair of pieces and what is known of their distance. Lengths are in the unit of the body pair.
 struct alignas(64) Node {
-  // What the scan of the front reads.
-  float lower = 0;  ///< proved lower bound of the distance of the two pieces' original descendants,
-                    ///< at the time when
-  double travel_at = 0;  ///< ... the body pair's odometers stood here
+  // What the scan of the front reads: one cache line. Both bounds were proved when the body pair's
+  // odometers stood at travel_at and turn_at, and shrink by the motion since.
+  double travel_at = 0;
   double turn_at = 0;
-  float reach = 0;  ///< farthest point of piece a from the centre of body a: lever arm of turning
-  std::uint16_t pair = 0;  ///< body pair
-  std::int8_t contact =
-      0;  ///< the last query gave a contact at the witnesses: 1 apart, -1 overlapping; 0 none
+  float rest = 0;     ///< while this is delta or more, the node need not be looked at: neither its
+                      ///< pieces nor what is below them give a contact
+  float certain = 0;  ///< lower bound of the distance of the two pieces' original descendants
+  float reach = 0;    ///< farthest point of piece a from the centre of body a: lever arm of turning
+  std::uint16_t pair = 0;   ///< body pair
+  std::int8_t contact = 0;  ///< a query, perhaps of an ancestor, gave a contact at the witnesses: 1
+                            ///< apart, -1 overlapping; 0 none
+  std::uint8_t flags = 0;
   std::uint32_t piece_a = 0;
   std::uint32_t piece_b = 0;
   // Links.
@@ -30,12 +40,27 @@ struct alignas(64) Node {
   std::uint32_t first_child = kNone;
   std::uint32_t next_sibling = kNone;  ///< also links the free list
   std::uint32_t front_slot = kNone;    ///< place in the front; kNone inside the tree
-  // Warm start.
-  convex::Cache cache;
-  Vec3f witness_a{};  ///< in the coordinates of a and of b
+  // Of the last query.
+  Vec3f witness_a{};  ///< in the coordinates of a and of b; without a contact witness_a is the
+                      ///< separating direction instead
   Vec3f witness_b{};
+  float slack = 0;   ///< the original surfaces are at most this farther apart than the witnesses
+  float s_star = 0;  ///< eq. 7; an ancestor's until the node is measured
+  float excess = 0;  ///< Detail::excess
+  std::uint32_t report = kNone;  ///< its contact of this tick; inside the tree: the last tick in
+                                 ///< which it was mixed
+  // Warm starts.
+  convex::Cache own;      ///< of the pieces' hulls
+  convex::Cache culling;  ///< of their culling hulls
 };
-static_assert(sizeof(Node) == 128);
+static_assert(sizeof(Node) == 192);
+
+inline void set(Node& node, std::uint8_t flags) noexcept {
+  node.flags = static_cast<std::uint8_t>(node.flags | flags);
+}
+inline void clear(Node& node, std::uint8_t flags) noexcept {
+  node.flags = static_cast<std::uint8_t>(node.flags & ~flags);
+}
 
 /// A fixed pool of nodes, one tree for every body pair, all fronts in one array. A node is replaced
 /// by *all* its children or all children by their parent, so that the front covers every pair of

@@ -32,12 +32,17 @@ struct AlignedBytes {
   [[nodiscard]] std::span<std::byte> span() const { return {data.get(), size}; }
 };
 
+inline bake::BakeOptions options_for(bake::ForEngine engine) {
+  bake::BakeOptions options;
+  options.engine = engine;
+  return options;
+}
+
 struct BakedBody {
   explicit BakedBody(bake::Mesh m, bake::ForEngine engine = bake::ForEngine::levels)
-      : mesh(std::move(m)) {
+      : BakedBody(std::move(m), options_for(engine)) {}
+  BakedBody(bake::Mesh m, const bake::BakeOptions& options) : mesh(std::move(m)) {
     bake::BakeReport report;
-    bake::BakeOptions options;
-    options.engine = engine;
     const std::vector<std::byte> image = bake::bake(mesh, bake::check(mesh), options, {}, report);
     bytes = std::make_unique<AlignedBytes>(image.size());
     std::memcpy(bytes->data.get(), image.data(), image.size());

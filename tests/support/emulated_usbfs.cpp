@@ -3,6 +3,8 @@
 
 #include <fcntl.h>
 #include <linux/usbdevice_fs.h>
+#include <pthread.h>
+#include <sched.h>
 #include <sys/ioctl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -24,6 +26,7 @@ std::atomic<EmulatedUsbfs*> g_usbfs{nullptr};
 
 constexpr std::uint64_t kLookEvery_ns = 100'000;
 constexpr std::size_t kSetupBytes = 8;
+constexpr int kHardwarePriority = 90;
 constexpr int kHighSpeed = 3;
 constexpr std::size_t kDeviceDescriptorBytes = 18;
 
@@ -92,6 +95,10 @@ EmulatedUsbfs::~EmulatedUsbfs() {
 }
 
 void EmulatedUsbfs::live() {
+  // Hardware does not wait for a processor; refused without the right to it.
+  sched_param parameter{};
+  parameter.sched_priority = kHardwarePriority;
+  pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
   while (!stopping_) {
     std::uint64_t next_ns = 0;
     {
@@ -312,8 +319,6 @@ long EmulatedUsbfs::on_seek(long offset) {
   return offset;
 }
 
-namespace {
-
 EmulatedUsbfs* usbfs_of(int fd) {
   EmulatedUsbfs* usbfs = g_usbfs;
   return usbfs != nullptr && usbfs->descriptor() == fd ? usbfs : nullptr;
@@ -325,32 +330,4 @@ long with_errno(long result) {
   return -1;
 }
 
-}  // namespace
 }  // namespace palpate::hal::test
-
-// The executable's own definitions come before the C library's, for libusb too.
-extern "C" {
-
-int ioctl(int fd, unsigned long request, ...) noexcept {
-  va_list arguments;
-  va_start(arguments, request);
-  void* argument = va_arg(arguments, void*);
-  va_end(arguments);
-  if (auto* usbfs = palpate::hal::test::usbfs_of(fd)) {
-    return static_cast<int>(palpate::hal::test::with_errno(usbfs->on_ioctl(request, argument)));
-  }
-  return static_cast<int>(::syscall(SYS_ioctl, fd, request, argument));
-}
-
-ssize_t read(int fd, void* out, std::size_t bytes) {
-  if (auto* usbfs = palpate::hal::test::usbfs_of(fd)) return usbfs->on_read(out, bytes);
-  return ::syscall(SYS_read, fd, out, bytes);
-}
-
-off_t lseek(int fd, off_t offset, int whence) noexcept {
-  if (auto* usbfs = palpate::hal::test::usbfs_of(fd)) return usbfs->on_seek(offset);
-  return ::syscall(SYS_lseek, fd, offset, whence);
-}
-
-off64_t lseek64(int fd, off64_t offset, int whence) noexcept { return lseek(fd, offset, whence); }
-}

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linux usbfs for one simulated device, inside the test's own process: the real libusb talks to it
-// through a file descriptor whose system calls are answered here. What it leaves out: bandwidth,
-// and the kernel's checks of requests.
+// Linux usbfs for one simulated device, inside the process of its user: the real libusb talks to it
+// through a file descriptor whose system calls are answered here (usbfs_calls.cpp where it is
+// linked in, usbfs_shim.cpp where it is preloaded). What it leaves out: bandwidth, and the kernel's
+// checks of requests.
 //
 // libusb is given the writing end of a pipe of one page. While the pipe is full there is nothing to
 // reap; drained, it is ready for writing, which is how usbfs says that a transfer has completed;
@@ -98,5 +99,11 @@ class EmulatedUsbfs {
   std::atomic<bool> stopping_{false};
   std::thread thread_;
 };
+
+/// The emulation behind a file descriptor; null where it is another file's.
+[[nodiscard]] EmulatedUsbfs* usbfs_of(int fd);
+
+/// A negative errno as a system call returns it.
+[[nodiscard]] long with_errno(long result);
 
 }  // namespace palpate::hal::test

@@ -85,8 +85,11 @@ TEST(BakeCommand, What_is_wrong_is_refused_with_its_status) {
   expect_refused(bake({mesh, "-o", image, "--delta", "0"}), 2, "--delta");
   expect_refused(bake({mesh, "-o", image, "--delta", "nan"}), 2, "--delta");
   expect_refused(bake({mesh, "-o", image, "--threads", "-1"}), 2, "--threads");
-  expect_refused(bake({mesh, "-o", image, "--engine", "regions"}), 2, "--engine regions");
-  expect_refused(bake({mesh, "-o", image, "--engine", "both"}), 2, "--engine both");
+  expect_refused(bake({mesh, "-o", image, "--engine", "neither"}), 2, "--engine");
+  expect_refused(bake({mesh, "-o", image, "--s0-min", "0"}), 2, "--s0-min");
+  expect_refused(bake({mesh, "-o", image, "--stop-resolution", "-1"}), 2, "--stop-resolution");
+  expect_refused(bake({mesh, "-o", image, "--support-area", "none"}), 2, "--support-area");
+  expect_refused(bake({mesh, "-o", image, "--max-bytes", "100"}), 3, "--s0-min");
   expect_refused(bake({folder.path() / "none.off", "-o", image}), 3, "none.off");
   expect_refused(bake({folder.write("bad.off", "OFF\n1 1 0\n"), "-o", image}), 3, "bad.off");
   EXPECT_FALSE(std::filesystem::exists(image));

@@ -10,6 +10,7 @@
 
 #include "bake_support.hpp"
 #include "host_bake/hierarchy/merge.hpp"
+#include "host_bake/metrics/culling.hpp"
 #include "host_bake/metrics/hausdorff.hpp"
 #include "host_bake/metrics/hull_side.hpp"
 #include "host_bake/metrics/sphere.hpp"
@@ -178,8 +179,8 @@ TEST(Hausdorff, Merged_hulls_enclose_exactly) {
   for (const float h : hausdorff_bounds(tree)) EXPECT_EQ(h, 0);
 }
 
-TEST(Hausdorff, Adds_up_over_levels_that_do_not_enclose) {
-  // Three triangles one over the other, 0.1 apart, each the parent of the one below.
+// Three triangles one over the other, 0.1 apart, each the parent of the one below.
+Hierarchy stack_of_triangles() {
   Hierarchy tree;
   for (std::uint32_t i = 0; i < 3; ++i) {
     const float z = 0.1f * static_cast<float>(i);
@@ -188,17 +189,66 @@ TEST(Hausdorff, Adds_up_over_levels_that_do_not_enclose) {
     piece.level = i;
     piece.parent = i < 2 ? i + 1 : image::kNone;
     if (i > 0) piece.children = {i - 1};
+    if (i > 0) piece.enclosing = {0, 1, 2};
     piece.vertices = {3 * i, 3 * i + 1, 3 * i + 2};
     piece.hull_vertices = 3;
     piece.dimension = 2;
     piece.hull_faces = {{0, 1, 2}, {0, 2, 1}};
     tree.pieces.push_back(piece);
   }
-  const std::vector<float> h = hausdorff_bounds(tree);
+  return tree;
+}
+
+TEST(Hausdorff, Is_that_of_the_original_surface) {
+  const std::vector<float> h = hausdorff_bounds(stack_of_triangles());
   EXPECT_EQ(h[0], 0);
   EXPECT_NEAR(h[1], 0.1, 1e-6);
   EXPECT_NEAR(h[2], 0.2, 1e-6);
   EXPECT_GE(h[1], 0.1f);
+}
+
+TEST(Culling, Few_points_are_taken_as_they_are) {
+  const Hierarchy tree = stack_of_triangles();
+  const auto bounds = culling_bounds(tree, hausdorff_bounds(tree));
+  EXPECT_TRUE(bounds[0].points.empty());
+  EXPECT_EQ(bounds[2].points, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(bounds[2].residual, 0);
+}
+
+TEST(Culling, Own_hull_serves_where_nothing_is_outside) {
+  const Hierarchy tree = stack_of_triangles();
+  for (const CullingBound& bound : culling_bounds(tree, {0, 0, 0})) {
+    EXPECT_TRUE(bound.points.empty());
+    EXPECT_EQ(bound.residual, 0);
+  }
+}
+
+// Flat, straight and round sets of several hundred extreme points.
+TEST(Culling, Reduced_hull_and_residual_hold_all_points) {
+  std::mt19937_64 random(11);
+  for (const float flat : {1.0f, 1e-2f, 1e-6f, 0.0f}) {
+    std::vector<PointF> points = random_points(600, 1, random);
+    for (PointF& p : points) {
+      const double length = norm(vec(p));
+      for (float& c : p) c = static_cast<float>(0.9 * static_cast<double>(c) / length);
+      p[2] *= flat;
+    }
+    Hierarchy tree;
+    tree.points = points;
+    TreePiece piece;
+    piece.enclosing = convex_hull(points).vertices;
+    tree.pieces.push_back(piece);
+    const CullingBound bound = culling_bounds(tree, {4.0f})[0];
+    ASSERT_GE(bound.points.size(), 3u);
+    EXPECT_LE(bound.points.size(), image::kMaxCullingVertices);
+    const std::vector<PointF> kept = positions(tree, bound.points);
+    const HullMesh hull = convex_hull(kept);
+    EXPECT_EQ(hull.vertices.size(), kept.size()) << flat;
+    const HullSide side(kept, hull.faces, hull.dimension);
+    for (const PointF& p : points)
+      EXPECT_LE(side.distance(p), static_cast<double>(bound.residual)) << flat;
+    EXPECT_LT(bound.residual, 0.25f) << flat;
+  }
 }
 
 }  // namespace

@@ -151,7 +151,9 @@ TEST(Pack, Too_many_children_are_refused_by_name) {
   tree.levels.push_back({.pieces = 1, .free = true});
   Metrics metrics;
   metrics.spheres.resize(tree.pieces.size());
+  metrics.surface_deviation.resize(tree.pieces.size());
   metrics.hausdorff.resize(tree.pieces.size());
+  metrics.culling.resize(tree.pieces.size());
   metrics.support_area.resize(tree.points.size(), 1);
   try {
     pack(tree, metrics, {});
@@ -162,7 +164,7 @@ TEST(Pack, Too_many_children_are_refused_by_name) {
 }
 
 TEST(Pack, Levels_of_several_children_are_laid_out) {
-  // What simplified levels will look like: four triangles under one parent.
+  // As simplified levels are: four triangles under one parent.
   const NormalMesh mesh = normalise(testing::sheet(2));
   Hierarchy tree = level_zero(mesh, testing::triangle_patches(mesh), 3);
   const auto first = static_cast<std::uint32_t>(tree.pieces.size());
@@ -177,7 +179,7 @@ TEST(Pack, Levels_of_several_children_are_laid_out) {
     parent.hull_faces = tree.pieces[4 * half].hull_faces;
     parent.triangles = {{{0, 1, 2}, image::kNone}};
     parent.all_real = true;
-    parent.surface_deviation = 0.1f;
+    parent.enclosing = enclosing_hull(tree, parent.children).points;
     tree.pieces.push_back(parent);
   }
   tree.levels.push_back({.pieces = 2, .triangles = 2, .free = false, .resolution = 2});
@@ -190,7 +192,8 @@ TEST(Pack, Levels_of_several_children_are_laid_out) {
   facts.source_boundary_edges = 8;
   facts.flags = static_cast<std::uint32_t>(image::HeaderFlag::open);
   facts.delta_rel = 0.01f;
-  const Metrics metrics = measure(tree, std::vector<float>(tree.points.size(), 1), {});
+  const Metrics metrics =
+      measure(tree, {}, {{0.1f, 0.1f}}, std::vector<float>(tree.points.size(), 1), {});
   const Image image(pack(tree, metrics, facts));
   ASSERT_EQ(image.view.levels.size(), 3u);
   EXPECT_EQ(image.view.header->max_children, 4u);

@@ -28,13 +28,15 @@ struct Records {
         vertices(writable(view.vertices)),
         neighbours(writable(view.neighbours)),
         triangles(writable(view.triangles)),
-        virtual_faces(writable(view.virtual_faces)) {}
+        virtual_faces(writable(view.virtual_faces)),
+        culling_vertices(writable(view.culling_vertices)) {}
   std::span<image::Level> levels;
   std::span<image::Piece> pieces;
   std::span<image::Vertex> vertices;
   std::span<std::uint32_t> neighbours;
   std::span<image::Triangle> triangles;
   std::span<image::VirtualFace> virtual_faces;
+  std::span<image::Vertex> culling_vertices;
 };
 
 std::string text_of(const std::vector<Proof>& proofs) {
@@ -48,7 +50,7 @@ std::string text_of(const std::vector<Proof>& proofs) {
 void expect_verified(const Mesh& mesh) {
   const Image image(bake_bytes(mesh));
   const std::vector<Proof> proofs = verify(image.view);
-  EXPECT_GE(proofs.size(), 13u);
+  EXPECT_GE(proofs.size(), 15u);
   EXPECT_EQ(text_of(proofs), "");
 }
 
@@ -73,6 +75,7 @@ TEST(Verify, Good_images_hold) {
   expect_verified(testing::sheet(5));
   expect_verified(testing::two_spheres());
   expect_verified(testing::dented_sphere());
+  expect_verified(testing::dented_sphere(4));
 }
 
 TEST(Verify, Doubled_source_triangle_is_found) {
@@ -157,18 +160,56 @@ TEST(Verify, Child_outside_its_parent_is_found) {
                "hulls of free levels enclose");
 }
 
+// The first piece of a simplified level.
+image::Piece& simplified_piece(const Records& r) {
+  const auto found = std::find_if(r.pieces.begin(), r.pieces.end(), [&](const image::Piece& p) {
+    return p.level > 0 && r.levels[p.level].free == 0 && p.hausdorff > 0 && p.culling_vertices > 0;
+  });
+  EXPECT_NE(found, r.pieces.end());
+  return *found;
+}
+
+Mesh fine_dents() { return testing::dented_sphere(4); }
+
 TEST(Verify, Too_small_h_is_found) {
   EXPECT_FOUND(
-      found_after(testing::dented_sphere(),
-                  [](const Records& r) { r.pieces[r.pieces.size() - 1].hausdorff = 0.1f; }),
-      "h bounds");
+      found_after(fine_dents(), [](const Records& r) { simplified_piece(r).hausdorff = 0; }),
+      "h and residual bound");
+}
+
+TEST(Verify, Too_small_culling_hull_is_found) {
+  EXPECT_FOUND(found_after(fine_dents(),
+                           [](const Records& r) {
+                             const image::Piece& piece = simplified_piece(r);
+                             for (std::uint32_t i = 0; i < piece.culling_vertices; ++i)
+                               scale(r.culling_vertices[piece.first_culling_vertex + i], 0.99f);
+                           }),
+               "h and residual bound");
+}
+
+TEST(Verify, Too_small_s_is_found) {
+  EXPECT_FOUND(found_after(fine_dents(),
+                           [](const Records& r) {
+                             for (image::Piece& p : r.pieces) p.surface_deviation = 0;
+                           }),
+               "s bounds how far");
+}
+
+TEST(Verify, Level_that_is_no_surface_is_found) {
+  EXPECT_FOUND(found_after(fine_dents(),
+                           [](const Records& r) {
+                             const image::Piece& piece = simplified_piece(r);
+                             auto& corners = r.triangles[piece.first_triangle].vertices;
+                             std::swap(corners[0], corners[1]);
+                           }),
+               "levels are oriented manifolds");
 }
 
 TEST(Verify, Deviation_of_the_original_surface_is_found) {
   EXPECT_FOUND(
       found_after(testing::cube(),
                   [](const Records& r) { r.pieces[r.pieces.size() - 1].surface_deviation = 0.1f; }),
-      "s is 0 on level 0");
+      "s is 0 on the original");
 }
 
 TEST(Verify, Resolution_out_of_order_is_found) {

@@ -220,7 +220,7 @@ TEST_F(Replay, Wrong_scene_exits_2) {
 
 TEST_F(Replay, Wrong_options_exit_2) {
   expect_refusal(replay({"--engine", "other"}), 2, "palpate replay --help");
-  expect_refusal(replay({"--kappa", "1"}), 2, "--kappa");
+  expect_refusal(replay({"--kappa", "-1"}), 2, "--kappa");
   expect_refusal(replay({"--force-tolerance", "-1"}), 2, "--force-tolerance");
   expect_refusal(replay({"--budget-us", "1", "--budget-units", "1"}), 2, "xcludes");
   expect_refusal(replay({"--s0", "-1"}), 2, "--s0");

@@ -107,6 +107,7 @@ TEST(FormatPage, Header_is_the_struct) {
                                        PALPATE_FIELD(H, max_patch_triangles),
                                        PALPATE_FIELD(H, max_valence),
                                        PALPATE_FIELD(H, leaf_pieces),
+                                       PALPATE_FIELD(H, dropped_levels),
                                        PALPATE_FIELD(H, reserved1),
                                        PALPATE_FIELD(H, sections),
                                        PALPATE_FIELD(H, reserved2)};
@@ -118,10 +119,11 @@ TEST(FormatPage, Section_and_its_slots_are_those_of_the_header) {
   const std::vector<Field> expected = {PALPATE_FIELD(S, offset), PALPATE_FIELD(S, count),
                                        PALPATE_FIELD(S, stride)};
   EXPECT_EQ(fields_of("## 3. Sections"), expected);
-  const std::vector<std::size_t> strides = {sizeof(image::Level),      sizeof(image::Piece),
-                                            sizeof(image::Vertex),     sizeof(std::uint32_t),
-                                            sizeof(std::uint32_t),     sizeof(image::Triangle),
-                                            sizeof(image::VirtualFace)};
+  const std::vector<std::size_t> strides = {
+      sizeof(image::Level),          sizeof(image::Piece),  sizeof(image::Vertex),
+      sizeof(std::uint32_t),         sizeof(std::uint32_t), sizeof(image::Triangle),
+      sizeof(image::VirtualFace),    sizeof(image::Vertex), sizeof(image::RegionNode),
+      sizeof(image::RegionTriangle), sizeof(image::Region)};
   std::vector<std::size_t> found;
   for (const auto& row : rows_of("## 3. Sections")) {
     if (row.size() == 4) found.push_back(std::stoul(row[2]));
@@ -164,6 +166,9 @@ TEST(FormatPage, Piece_is_the_struct) {
                                        PALPATE_FIELD(P, triangles),
                                        PALPATE_FIELD(P, first_virtual_face),
                                        PALPATE_FIELD(P, virtual_faces),
+                                       PALPATE_FIELD(P, first_culling_vertex),
+                                       PALPATE_FIELD(P, culling_vertices),
+                                       PALPATE_FIELD(P, culling_residual),
                                        PALPATE_FIELD(P, reserved)};
   EXPECT_EQ(fields_of("## 5. Piece"), expected);
 }

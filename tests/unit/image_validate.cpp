@@ -104,7 +104,7 @@ TEST(Validate, Image_of_version_1_0_still_loads) {
   EXPECT_EQ(view.header->format_minor, 0);
   EXPECT_EQ(view.header->leaf_pieces, 3u);
   EXPECT_EQ(view.header->source_triangles, 84u);
-  EXPECT_EQ(view.header->content_sha256[0], 0x32);
+  EXPECT_EQ(view.header->content_sha256[0], 0xe3);
   EXPECT_EQ(view.levels.size(), 3u);
   EXPECT_EQ(view.pieces.size(), 5u);
   EXPECT_EQ(view.virtual_faces.size(), 1u);
@@ -177,7 +177,7 @@ TEST(Validate, NewerMinorVersion_loads_and_its_unknown_parts_are_ignored) {
   EXPECT_EQ(status_with_header([](H& h) { h.format_minor = 1; }), Status::ok);
   EXPECT_EQ(status_with_header([](H& h) {
               h.format_minor = 1;
-              h.reserved0 = h.reserved1[2] = 7;
+              h.reserved0 = h.reserved1[1] = 7;
               h.reserved2[39] = 1;
               h.flags |= 0x80000000u;
             }),
@@ -188,7 +188,7 @@ TEST(Validate, NewerMinorVersion_with_a_further_section_loads) {
   AlignedBytes bytes = seal(rich_parts());
   image::Header header;
   std::memcpy(&header, bytes.data(), sizeof(header));
-  header.sections[9] = {bytes.size(), 5, 12};
+  header.sections[11] = {bytes.size(), 5, 12};
   bytes.resize(bytes.size() + 64);
   header.total_bytes = bytes.size();
   std::memcpy(bytes.data(), &header, sizeof(header));
@@ -206,7 +206,7 @@ TEST(Validate, HeaderFields_out_of_range_are_refused) {
   constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
   const std::vector<std::function<void(H&)>> changes = {
       [](H& h) { h.header_bytes = 511; },
-      [](H& h) { h.flags = 8; },
+      [](H& h) { h.flags = 16; },
       [](H& h) { h.flags = 2; },
       [](H& h) { h.flags = 4; },
       [](H& h) { h.source_boundary_edges = 1; },
@@ -299,7 +299,7 @@ TEST(Validate, Levels_that_contradict_their_pieces_are_refused) {
       [](P& p) { p.levels[0].max_surface_deviation_rel = 0.5f; },
       [](P& p) { p.levels[1].max_hausdorff_rel = 0.5f; },
       [](P& p) { p.levels[2].min_support_area_rel = 0.5f; },
-      [](P& p) { p.pieces[0].hausdorff = 0.5f; },
+      [](P& p) { p.pieces[0].hausdorff = p.pieces[0].culling_residual = 0.5f; },
       [](P& p) { p.levels[0].min_support_area_rel = std::numeric_limits<float>::quiet_NaN(); }};
   for (std::size_t i = 0; i < changes.size(); ++i) {
     EXPECT_EQ(status_with(changes[i]), Status::image_bad_level) << "change " << i;
@@ -357,13 +357,71 @@ TEST(Validate, PieceRecords_that_are_inconsistent_are_refused) {
   EXPECT_EQ(status(roles.triangle, [](P& p) { p.flags |= 2; }), Status::ok);
   EXPECT_EQ(status(0, [](P& p) { p.flags = 1; }), bad);
   EXPECT_EQ(status(0, [](P& p) { p.first_triangle = 0; }), bad);
-  EXPECT_EQ(status(0, [](P& p) { p.reserved[9] = 1; }), bad);
+  EXPECT_EQ(status(0, [](P& p) { p.reserved[6] = 1; }), bad);
   EXPECT_EQ(status(0, [](P& p) { p.level = 3; }), bad);
+  EXPECT_EQ(status(0, [](P& p) { p.first_culling_vertex = 0; }), bad);
+  EXPECT_EQ(status(0, [](P& p) { p.culling_vertices = 1; }), bad);
+  EXPECT_EQ(status(0, [](P& p) { p.culling_vertices = 0xffffffffu; }), bad);
   EXPECT_EQ(status(0, [](P& p) { p.radius *= 0.99f; }), bad);
   EXPECT_EQ(status(0, [](P& p) { p.centre[0] += 0.1f; }), bad);
   EXPECT_EQ(status(0, [](P& p) { p.min_support_area = 0.125f; }), bad);
   EXPECT_EQ(status(0, [](P& p) { p.hull_vertices = image::kMaxHullVertices + 1; }),
             Status::image_over_limit);
+}
+
+/// The root of rich_parts() with a culling hull: its own vertices.
+ImageParts with_culling_hull() {
+  ImageParts parts = rich_parts();
+  image::Piece& root = parts.pieces[0];
+  for (std::uint32_t i = 0; i < root.hull_vertices; ++i) {
+    parts.culling_vertices.push_back(parts.vertices[root.first_vertex + i]);
+    parts.culling_vertices.back().support_area = 0;
+  }
+  root.first_culling_vertex = 0;
+  root.culling_vertices = root.hull_vertices;
+  root.culling_residual = 0.25f;
+  return parts;
+}
+
+Status status_of(const ImageParts& parts) {
+  const AlignedBytes bytes = seal(parts);
+  ImageView view;
+  return validate(bytes, view);
+}
+
+TEST(Validate, CullingHulls_are_checked) {
+  EXPECT_EQ(status_of(with_culling_hull()), Status::ok);
+  const auto changed = [](auto change) {
+    ImageParts parts = with_culling_hull();
+    change(parts);
+    return status_of(parts);
+  };
+  using P = ImageParts;
+  EXPECT_EQ(changed([](P& p) { p.culling_vertices.pop_back(); }), Status::image_bad_piece);
+  EXPECT_EQ(changed([](P& p) { p.culling_vertices.push_back(p.culling_vertices[0]); }),
+            Status::image_bad_piece);
+  EXPECT_EQ(changed([](P& p) { p.culling_vertices[3].position[0] = 2; }), Status::image_bad_float);
+  EXPECT_EQ(changed([](P& p) { p.culling_vertices[3].support_area = 1; }), Status::image_bad_float);
+  EXPECT_EQ(changed([](P& p) { p.pieces[0].culling_residual = -1; }), Status::image_bad_float);
+  EXPECT_EQ(changed([](P& p) {
+              for (float& c : p.culling_vertices[3].position) c *= 1.2f;
+            }),
+            Status::image_bad_piece);
+}
+
+TEST(Validate, Promise_of_an_image_is_checked) {
+  using H = image::Header;
+  const auto bad = Status::image_bad_header;
+  EXPECT_EQ(status_with_header([](H& h) { h.dropped_levels = 1; }), bad);
+  EXPECT_EQ(status_with_header([](H& h) { h.s0_min = 0.1f; }), bad);
+  EXPECT_EQ(status_with_header([](H& h) { h.partner_area = 0.1f; }), bad);
+  EXPECT_EQ(status_with_header([](H& h) { h.dropped_levels = 65; }), bad);
+  // The original surface is said to be missing, but its triangles name their sources.
+  EXPECT_EQ(status_with_header([](H& h) {
+              h.dropped_levels = 1;
+              h.s0_min = 0.1f;
+            }),
+            Status::image_bad_index);
 }
 
 TEST(Validate, PieceNumbers_out_of_range_are_refused) {
@@ -378,7 +436,7 @@ TEST(Validate, PieceNumbers_out_of_range_are_refused) {
                 Status::image_bad_float);
     }
   }
-  for (const float value : {kNan, kInfinity, 1.1f, -1.1f}) {
+  for (const float value : {kNan, kInfinity, 1.6f, -1.6f}) {
     EXPECT_EQ(status_with([&](ImageParts& p) { p.pieces[1].centre[1] = value; }),
               Status::image_bad_float);
   }
@@ -458,7 +516,7 @@ TEST(Validate, IndicesOutOfRange_are_refused) {
 TEST(Validate, VertexNumbers_out_of_range_are_refused) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  for (const float value : {kNan, kInfinity, -kInfinity, 1.1f}) {
+  for (const float value : {kNan, kInfinity, -kInfinity, 1.6f}) {
     EXPECT_EQ(status_with([&](ImageParts& p) { p.vertices[5].position[2] = value; }),
               Status::image_bad_float);
   }

@@ -124,7 +124,6 @@ TEST_F(MeshCommands, bake_refuses_options_out_of_range_with_2) {
        std::vector<std::vector<std::string>>{{"--delta", "0"},
                                              {"--delta", "nan"},
                                              {"--unit-scale", "-1"},
-                                             {"--engine", "regions"},
                                              {"--engine", "none"},
                                              {"--frobnicate"}}) {
     std::vector<std::string> call{"bake", file, "-o", out(".palp")};

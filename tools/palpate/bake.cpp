@@ -17,6 +17,7 @@
 #include "host_bake/pack/aligned.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/image_json.hpp"
+#include "tools/palpate/image_text.hpp"
 #include "tools/palpate/output_file.hpp"
 
 namespace palpate::cli {
@@ -29,6 +30,7 @@ struct Options {
   std::string image;
   std::string report;  ///< empty: none
   std::string engine;  ///< empty: as much as the other options allow
+  std::string support = "one-ring";
   double unit_scale = 1.0;
   bool repair = false;
   bool strict = false;
@@ -71,6 +73,7 @@ Baked bake_file(const Options& options) {
   bake::require_bakeable(check, checked, options.strict);
   bake::BakeOptions how = options.bake;
   how.engine = engine_of(options);
+  if (options.support == "grown") how.support = bake::SupportReading::grown;
   how.repaired = !out.repairs.empty();
   how.source_sha256 = read.sha256;
   out.bytes = bake::bake(read.mesh, check, how, progress, out.report);
@@ -106,7 +109,7 @@ void print(const Options& options, const Baked& baked, const ImageView& image) {
                 image.header->source_triangles, image.header->leaf_pieces, image.levels.size(),
                 static_cast<unsigned long long>(image.header->total_bytes), seconds,
                 static_cast<double>(baked.report.peak_bytes) / 1e6);
-  std::cout << options.image << ": " << figures << "\n";
+  std::cout << options.image << ": " << figures << "\n" << table_2_text(image);
 }
 
 void bake(const Options& options) {
@@ -120,6 +123,39 @@ void bake(const Options& options) {
   image_file.commit();
   if (report_file) report_file->commit();
   if (!options.quiet) print(options, baked, view);
+}
+
+void add_stop_rules(CLI::App& command, bake::BakeOptions& options) {
+  command
+      .add_option("--stop-resolution", options.stop.stop_resolution,
+                  "Simplify no further than this resolution r, for radius 1")
+      ->check(number_between(0, 1e9))
+      ->capture_default_str();
+  command
+      .add_option("--stop-deviation", options.stop_deviation_rel,
+                  "Keep no level that deviates by more than this share of the radius; 0: any")
+      ->check(number_between(0, 4))
+      ->capture_default_str();
+  command
+      .add_option("--stop-pieces", options.stop.stop_pieces,
+                  "Simplify to no fewer pieces than this")
+      ->capture_default_str();
+}
+
+void add_requirements(CLI::App& command, bake::BakeOptions& options) {
+  command
+      .add_option("--s0-min", options.s0_min,
+                  "Leave out the levels that no threshold s0 from this up can reach")
+      ->check(number_between(1e-30, 1e6));
+  command
+      .add_option("--max-bytes", options.max_bytes,
+                  "Leave out the finest levels until the image is no larger than this")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--partner-area", options.partner_area,
+                  "Least support area of the objects it will touch, relative to this one's radius "
+                  "squared: with --s0-min or --max-bytes")
+      ->check(number_between(0, 1e9));
 }
 
 }  // namespace
@@ -139,6 +175,14 @@ void add_bake(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--repair", options->repair, "Mend what a safe repair can, see check");
   command->add_flag("--strict", options->strict, "Refuse a mesh whose faces cross one another");
+  command
+      ->add_option("--support-area", options->support,
+                   "Surface that supports a contact (D of eq. 7): the vertex's own faces, or those "
+                   "grown from them within the contact tolerance")
+      ->check(CLI::IsMember({"one-ring", "grown"}))
+      ->capture_default_str();
+  add_stop_rules(*command, options->bake);
+  add_requirements(*command, options->bake);
   command
       ->add_option("--engine", options->engine,
                    "Query engine that the image is for; default: both, or levels where --s0-min or "

@@ -57,6 +57,14 @@ void append_header(std::string& out, const ImageView& image, std::size_t engine_
          image.pieces.size(), h.tree_depth, h.max_children);
   append(out, "pieces         up to %u hull vertices, %u neighbours a vertex, %u triangles\n",
          h.max_hull_vertices, h.max_valence, h.max_patch_triangles);
+  if (h.dropped_levels > 0) {
+    append(
+        out,
+        "serves         s0 from %.6g up, against support areas from %.6g up; %u finer level%s left "
+        "out\n",
+        static_cast<double>(h.s0_min), static_cast<double>(h.partner_area), h.dropped_levels,
+        h.dropped_levels == 1 ? "" : "s");
+  }
   append(out, "engine memory  %zu bytes for two bodies of this image\n", engine_bytes);
 }
 
@@ -66,7 +74,8 @@ void append_table_2(std::string& out, const ImageView& image) {
   const image::Level& coarsest = image.levels[image.levels.size() - image.header->free_levels - 1];
   append(out, "\n%11s %10s %11s %10s %10s %10s %10s %6s\n", "Orig. Tris", "Orig. Pcs", "Simp. Tris",
          "Simp. Pcs", "r_1", "r_lambda", "Free LODs", "LODs");
-  append(out, "%11u %10u %11u %10u %10.2f %10.2f %10u %6zu\n", finest.triangles, finest.pieces,
+  const std::uint32_t triangles = image.header->source_triangles;
+  append(out, "%11u %10u %11u %10u %10.2f %10.2f %10u %6zu\n", triangles, finest.pieces,
          coarsest.triangles, coarsest.pieces, static_cast<double>(finest.resolution),
          static_cast<double>(coarsest.resolution), image.header->free_levels, image.levels.size());
 }
@@ -89,6 +98,12 @@ void append_levels(std::string& out, const ImageView& image) {
 }
 
 }  // namespace
+
+std::string table_2_text(const ImageView& image) {
+  std::string out;
+  append_table_2(out, image);
+  return out;
+}
 
 std::string image_text(const ImageView& image, std::size_t engine_bytes) {
   std::string out;

@@ -25,10 +25,6 @@ struct Arguments {
 
 /// The scene as the file has it, then as the command line wants it.
 config::Scene load(const Arguments& a) {
-  if (a.kappa) {
-    throw Failure(kUsage, "no engine of this build has a --kappa", "palpate replay",
-                  "leave it out");
-  }
   if (a.contacts == a.ticks) {
     throw Failure(kUsage, "ticks and contacts cannot be one file", a.ticks,
                   "give --contacts another name");
@@ -38,6 +34,7 @@ config::Scene load(const Arguments& a) {
   if (a.engine == "regions") scene.settings.engine = EngineKind::regions;
   if (a.exact) scene.settings.exact = true;
   if (a.s0) scene.settings.s0 = *a.s0;
+  if (a.kappa) scene.kappa = a.kappa;
   if (a.force_tolerance_N) scene.settings.force_tolerance_N = *a.force_tolerance_N;
   if (a.exact || a.budget_us || a.options.budget_units) scene.budget_us = a.budget_us;
   return scene;
@@ -178,7 +175,8 @@ void add_replay(CLI::App& app) {
                     "whatever the scene says");
   command->add_option("--s0", a->s0, "in place of the scene's s0")->check(number_between(0, 1e6));
   add_budget(*command, *a);
-  command->add_option("--kappa", a->kappa, "regions engine only");
+  command->add_option("--kappa", a->kappa, "in place of the scene's kappa (levels engine)")
+      ->check(number_between(0, 1e6));
   command
       ->add_option("--force-tolerance", a->force_tolerance_N,
                    "in place of the scene's force_tolerance_N (regions engine)")

@@ -70,14 +70,20 @@ bool SceneEngine::grow() {
 
 void SceneEngine::restart() {
   const std::span<std::byte> memory(memory_.get(), engine_bytes_);
-  const Status status = create(scene_, config_.settings, limits_, memory, engine_);
+  Settings settings = config_.settings;
+  if (config_.kappa) settings.kappa = *config_.kappa;
+  const Status status = create(scene_, settings, limits_, memory, engine_);
   if (status == Status::ok) return;
-  const Exit code = status == Status::image_missing_section || status == Status::image_over_limit
-                        ? kRefused
-                        : kUsage;
-  throw Failure(code, std::string("the engine refuses the scene (") + describe(status) + ")",
+  const bool image = status == Status::image_missing_section ||
+                     status == Status::image_over_limit || status == Status::image_too_coarse;
+  throw Failure(image ? kRefused : kUsage,
+                std::string("the engine refuses the scene (") + describe(status) + ")",
                 config_.file.string(),
-                "check [engine], [force], [limits] and that the images were baked for this engine");
+                status == Status::image_too_coarse
+                    ? "bake the images without --s0-min and --max-bytes, or with a smaller s0 and "
+                      "--partner-area; palpate inspect says what an image serves"
+                    : "check [engine], [force], [limits] and that the images were baked for this "
+                      "engine");
 }
 
 std::vector<Pose> SceneEngine::start_poses() const {

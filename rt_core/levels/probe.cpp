@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/levels/probe.hpp"
+
+namespace palpate::levels {
+namespace {
+
+using image::Piece;
+
+/// Rounding of the odometers and of float bounds, in units.
+constexpr double kMotionSlack = 1e-9;
+/// A query may stop once the pair is this many ticks of the present motion farther than delta: it
+/// then rests for as long.
+constexpr double kRestTicks = 6;
+
+/// Rounded towards minus infinity far enough for float.
+float float_below(double v) noexcept { return static_cast<float>(v - 1e-7 * (v < 0 ? -v : v)); }
+
+double motion(const PairState& pair, const Node& node) noexcept {
+  return (pair.travel - node.travel_at) +
+         (pair.turn - node.turn_at) * static_cast<double>(node.reach);
+}
+
+/// Both bounds as of now.
+void renew(const PairState& pair, Node& node) noexcept {
+  if (node.travel_at == pair.travel && node.turn_at == pair.turn) return;
+  node.rest = float_below(rest_now(pair, node));
+  node.certain = float_below(certain_now(pair, node));
+  node.travel_at = pair.travel;
+  node.turn_at = pair.turn;
+}
+
+double rest_margin(const PairState& pair, const Node& node) noexcept {
+  return kRestTicks * (pair.last_travel + pair.last_turn * static_cast<double>(node.reach));
+}
+
+/// Of the distance of what is below two overlapping hulls.
+double overlap_bound(const PairState& pair, const Node& node) noexcept {
+  const double spheres = sphere_distance(pair, piece_a(pair, node), piece_b(pair, node));
+  return spheres < 0 ? spheres : 0;
+}
+
+convex::Hull culling_hull_of(const ImageView& image, const Piece& piece, double scale) noexcept {
+  if (piece.culling_vertices == 0) return hull_of(image, piece, scale);
+  convex::Hull hull;
+  hull.vertices = image.culling_vertices.data() + piece.first_culling_vertex;
+  hull.count = piece.culling_vertices;
+  hull.scale = scale;
+  return hull;
+}
+
+}  // namespace
+
+double rest_now(const PairState& pair, const Node& node) noexcept {
+  return static_cast<double>(node.rest) - motion(pair, node) - kMotionSlack;
+}
+
+double certain_now(const PairState& pair, const Node& node) noexcept {
+  return static_cast<double>(node.certain) - motion(pair, node) - kMotionSlack;
+}
+
+void prove(const PairState& pair, Node& node, double certain) noexcept {
+  renew(pair, node);
+  if (certain > static_cast<double>(node.certain)) node.certain = float_below(certain);
+}
+
+void set_rest(const PairState& pair, Node& node, double rest) noexcept {
+  renew(pair, node);
+  node.rest = float_below(rest);
+}
+
+void begin(const PairState& pair, Node& node, double inherited) noexcept {
+  const Piece& a = piece_a(pair, node);
+  const double reach =
+      norm(centre_of(a, pair.scale_a)) + pair.scale_a * static_cast<double>(a.radius);
+  node.reach = static_cast<float>(reach * (1 + 1e-6));
+  const double spheres = sphere_distance(pair, a, piece_b(pair, node)) - kMotionSlack;
+  node.rest = float_below(spheres);
+  node.certain = float_below(spheres > inherited ? spheres : inherited);
+  node.travel_at = pair.travel;
+  node.turn_at = pair.turn;
+}
+
+void Probe::seed(const PairState& pair, Node& node, Vec3d towards_a) noexcept {
+  const Piece& a = piece_a(pair, node);
+  const Piece& b = piece_b(pair, node);
+  if (!is_free(a) && !is_free(b)) {
+    convex::seed(hull_of(*pair.image_a, a, pair.scale_a), hull_of(*pair.image_b, b, pair.scale_b),
+                 pair.b_in_a, towards_a, node.own);
+  }
+  convex::seed(culling_hull_of(*pair.image_a, a, pair.scale_a),
+               culling_hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a, towards_a,
+               node.culling);
+}
+
+double Probe::bound(const PairState& pair, Node& node) noexcept {
+  if (rules_.bounds == Bounds::paper) {
+    own(pair, node);
+    return certain_now(pair, node);
+  }
+  charge(1);
+  const Piece& a = piece_a(pair, node);
+  const Piece& b = piece_b(pair, node);
+  const double residual = pair.scale_a * static_cast<double>(a.culling_residual) +
+                          pair.scale_b * static_cast<double>(b.culling_residual);
+  const convex::Distance d =
+      convex::distance(culling_hull_of(*pair.image_a, a, pair.scale_a),
+                       culling_hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a,
+                       pair.delta + residual + rest_margin(pair, node), node.culling);
+  if (d.state == convex::State::gave_up) capped_ = true;
+  if (node.contact == 0 && !overlaps(d)) node.witness_a = vec_cast<float>(d.normal);
+  prove(pair, node, overlaps(d) ? overlap_bound(pair, node) : d.lower_bound - residual);
+  return certain_now(pair, node);
+}
+
+convex::Distance Probe::own(const PairState& pair, Node& node) noexcept {
+  charge(1);
+  const Piece& a = piece_a(pair, node);
+  const Piece& b = piece_b(pair, node);
+  const double h = pair.scale_a * static_cast<double>(a.hausdorff) +
+                   pair.scale_b * static_cast<double>(b.hausdorff);
+  const convex::Distance d = convex::distance(hull_of(*pair.image_a, a, pair.scale_a),
+                                              hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a,
+                                              pair.delta + h + rest_margin(pair, node), node.own);
+  if (d.state == convex::State::gave_up) capped_ = true;
+  prove(pair, node, overlaps(d) ? overlap_bound(pair, node) : d.lower_bound - h);
+  return d;
+}
+
+}  // namespace palpate::levels

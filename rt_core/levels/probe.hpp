@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Convex queries of the test tree's nodes, and the lower bounds that they prove.
+#pragma once
+
+#include <cstdint>
+
+#include "rt_core/base/meter.hpp"
+#include "rt_core/levels/body_pair.hpp"
+#include "rt_core/levels/rules.hpp"
+#include "rt_core/levels/test_tree.hpp"
+
+namespace palpate::levels {
+
+inline const image::Piece& piece_a(const PairState& pair, const Node& node) noexcept {
+  return pair.image_a->pieces[node.piece_a];
+}
+inline const image::Piece& piece_b(const PairState& pair, const Node& node) noexcept {
+  return pair.image_b->pieces[node.piece_b];
+}
+
+/// Node::rest and Node::certain now: less what a's points can have moved since they were proved.
+double rest_now(const PairState& pair, const Node& node) noexcept;
+double certain_now(const PairState& pair, const Node& node) noexcept;
+
+inline bool is_near(const PairState& pair, const Node& node) noexcept {
+  return rest_now(pair, node) < pair.delta;
+}
+
+/// Takes over a lower bound proved at this tick's pose, unless what is left of the last one is
+/// better.
+void prove(const PairState& pair, Node& node, double certain) noexcept;
+
+/// Sets Node::rest for this tick's pose.
+void set_rest(const PairState& pair, Node& node, double rest) noexcept;
+
+/// First bounds of a node that has none: its spheres, and what its parent is certain of.
+void begin(const PairState& pair, Node& node, double inherited) noexcept;
+
+inline bool overlaps(const convex::Distance& d) noexcept {
+  return d.state == convex::State::penetrating || d.state == convex::State::touching;
+}
+
+/// Does the queries, charges them, and proves the bounds that follow for the original surface.
+class Probe {
+ public:
+  Probe(const Rules& rules, Meter& meter) noexcept : rules_(rules), meter_(meter) {}
+
+  /// Of the culling hulls: what is certain then, exact up to delta and a little more, so that a
+  /// node rests for some ticks. With Bounds::paper of the hulls themselves, widened by h (eq. 5).
+  double bound(const PairState& pair, Node& node) noexcept;
+
+  /// Of the pieces' own hulls, exact up to delta + h + h.
+  convex::Distance own(const PairState& pair, Node& node) noexcept;
+
+  /// Starts both kinds of query from a guess of the direction from b to a.
+  static void seed(const PairState& pair, Node& node, Vec3d towards_a) noexcept;
+
+  /// Would bound() tell more than own() has?
+  [[nodiscard]] bool has_tighter(const PairState& pair, const Node& node) const noexcept {
+    return rules_.bounds == Bounds::tight &&
+           (piece_a(pair, node).culling_vertices != 0 || piece_b(pair, node).culling_vertices != 0);
+  }
+
+  void charge(std::uint64_t queries) noexcept {
+    meter_.charge(queries);
+    queries_ += queries;
+  }
+  [[nodiscard]] std::uint64_t queries() const noexcept { return queries_; }
+  [[nodiscard]] bool iteration_cap_met() const noexcept { return capped_; }
+
+ private:
+  const Rules& rules_;
+  Meter& meter_;
+  std::uint64_t queries_ = 0;
+  bool capped_ = false;
+};
+
+}  // namespace palpate::levels

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/levels/report.hpp"
+
+#include <limits>
+
+#include "rt_core/levels/levels_engine.hpp"
+#include "rt_core/levels/probe.hpp"
+
+namespace palpate::levels {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Vec3d in_world(const PairState& pair, Vec3d point) noexcept {
+  return pair.centre_a_m + pair.rotation_a * (pair.unit_m * point);
+}
+
+Vec3d mixed(double share, Vec3d own, Vec3d other) noexcept {
+  return share * own + (1 - share) * other;
+}
+
+}  // namespace
+
+void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
+          const LeafContact& contact, Node& node) noexcept {
+  node.contact = contact.distance < 0 ? -1 : 1;
+  node.witness_a = vec_cast<float>(contact.point_a);
+  node.witness_b = vec_cast<float>(transpose(pair.b_in_a.rotation) *
+                                   (contact.point_b - pair.b_in_a.translation));
+  constexpr double kRoundingUp = 1 + 1e-6;
+  node.slack =
+      static_cast<float>(kRoundingUp * (pair.scale_a * static_cast<double>(a.surface_deviation) +
+                                        pair.scale_b * static_cast<double>(b.surface_deviation)));
+}
+
+LeafContact remeasured(const PairState& pair, const Node& node) noexcept {
+  LeafContact contact;
+  contact.point_a = vec_cast<double>(node.witness_a);
+  contact.point_b =
+      pair.b_in_a.rotation * vec_cast<double>(node.witness_b) + pair.b_in_a.translation;
+  const Vec3d apart = contact.point_a - contact.point_b;
+  const double gap = norm(apart);
+  const double sign = node.contact;
+  contact.found = gap > 0;
+  contact.distance = sign * gap;
+  if (contact.found) contact.normal = (sign / gap) * apart;
+  return contact;
+}
+
+bool Report::add(const PairState& pair, Node& node, const LeafContact& contact) noexcept {
+  const double distance_m = contact.distance * pair.unit_m;
+  const double upper_m = distance_m + static_cast<double>(node.slack) * pair.unit_m;
+  if (upper_m < upper_m_) upper_m_ = upper_m;
+  if (count_ == contacts_.size()) return false;
+  node.report = count_;
+  Contact& out = contacts_[count_++];
+  out.point_a_m = in_world(pair, contact.point_a);
+  out.point_b_m = in_world(pair, contact.point_b);
+  out.normal = pair.rotation_a * contact.normal;
+  out.distance_m = distance_m;
+  out.weight = 0;
+  out.pair = node.pair;
+  out.piece_a = node.piece_a;
+  out.level_a = piece_a(pair, node).level;
+  out.piece_b = node.piece_b;
+  out.level_b = piece_b(pair, node).level;
+  return true;
+}
+
+void Report::blend(const PairState& pair, const Node& node, const LeafContact& other,
+                   double share) noexcept {
+  Contact& c = contacts_[node.report];
+  const double lower_m = certain_now(pair, node) * pair.unit_m;  // what was certain before mixing
+  if (lower_m < mixed_lower_m_) mixed_lower_m_ = lower_m;
+  c.point_a_m = mixed(share, c.point_a_m, in_world(pair, other.point_a));
+  c.point_b_m = mixed(share, c.point_b_m, in_world(pair, other.point_b));
+  const Vec3d normal = mixed(share, c.normal, pair.rotation_a * other.normal);
+  const double length = norm(normal);
+  if (length > 0) c.normal = (1 / length) * normal;
+  c.distance_m = share * c.distance_m + (1 - share) * other.distance * pair.unit_m;
+  if (c.distance_m >= pair.delta * pair.unit_m) c.distance_m = kInfinity;
+}
+
+void Report::finish(QueryResult& result) noexcept {
+  std::uint32_t kept = 0;
+  result.min_distance_m = kInfinity;
+  result.upper_m = upper_m_;
+  if (mixed_lower_m_ < result.unresolved_lower_m) result.unresolved_lower_m = mixed_lower_m_;
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    const Contact& c = contacts_[i];
+    if (c.distance_m == kInfinity) continue;
+    if (c.distance_m < result.min_distance_m) result.min_distance_m = c.distance_m;
+    if (kept != i) contacts_[kept] = c;
+    ++kept;
+  }
+  result.contacts = kept;
+}
+
+}  // namespace palpate::levels

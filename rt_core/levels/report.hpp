@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// The contacts of a tick while they are gathered.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "rt_core/levels/body_pair.hpp"
+#include "rt_core/levels/leaf_contact.hpp"
+#include "rt_core/levels/test_tree.hpp"
+#include "rt_core/palpate_rt.hpp"
+
+namespace palpate::levels {
+
+struct QueryResult;
+
+/// Keeps a contact in its node: as material points, with how much farther apart the original
+/// surfaces can be (the surface deviations of both pieces).
+void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
+          const LeafContact& contact, Node& node) noexcept;
+
+/// The contact kept in a node, measured again at its material points. found is false where these
+/// coincide.
+LeafContact remeasured(const PairState& pair, const Node& node) noexcept;
+
+class Report {
+ public:
+  explicit Report(std::span<Contact> contacts) noexcept : contacts_(contacts) {}
+
+  /// Adds the contact of a node. False where there is no room.
+  bool add(const PairState& pair, Node& node, const LeafContact& contact) noexcept;
+
+  /// Mixes a node's contact with another one: `share` of its own, the rest of `other`. At delta or
+  /// more it is dropped.
+  void blend(const PairState& pair, const Node& node, const LeafContact& other,
+             double share) noexcept;
+
+  /// Closes gaps; fills in contacts, min_distance_m and upper_m, lowers unresolved_lower_m to what
+  /// was mixed.
+  void finish(QueryResult& result) noexcept;
+
+ private:
+  std::span<Contact> contacts_;
+  std::uint32_t count_ = 0;
+  double upper_m_ = std::numeric_limits<double>::infinity();
+  double mixed_lower_m_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace palpate::levels

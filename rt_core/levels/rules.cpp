@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/levels/rules.hpp"
+
+#include <limits>
+
+namespace palpate::levels {
+namespace {
+
+using image::Piece;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// D at a witness, relative to its body's radius squared.
+double support_area(const ImageView& image, const Piece& piece, const std::uint32_t (&vertices)[3],
+                    const double (&weights)[3], std::uint32_t count) noexcept {
+  const image::Vertex* first = image.vertices.data() + piece.first_vertex;
+  double area = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    area += weights[i] * static_cast<double>(first[vertices[i]].support_area);
+  }
+  return area;
+}
+
+double phi(const Piece& piece) noexcept {
+  const double r = static_cast<double>(piece.resolution);
+  return static_cast<double>(piece.surface_deviation) / (r * r);
+}
+
+/// 0 where there is nothing, infinity where nothing is allowed.
+double ratio(double value, double allowed) noexcept {
+  if (!(value > 0)) return 0;
+  return allowed > 0 ? value / allowed : kInfinity;
+}
+
+double larger(double a, double b) noexcept { return a > b ? a : b; }
+
+}  // namespace
+
+Detail detail(const PairState& pair, const Piece& a, const Piece& b, const convex::Distance& query,
+              const Rules& rules) noexcept {
+  Detail out;
+  if (query.state == convex::State::penetrating || query.state == convex::State::touching) {
+    out.refine_a = a.children != 0;
+    out.refine_b = b.children != 0;
+    out.s_star = out.excess = out.refine_a || out.refine_b ? kInfinity : 0;
+    return out;
+  }
+  const double area_a =
+      support_area(*pair.image_a, a, query.vertices_a, query.weights_a, query.count_a);
+  const double area_b =
+      support_area(*pair.image_b, b, query.vertices_b, query.weights_b, query.count_b);
+  const double b_to_a = pair.scale_b / pair.scale_a;
+  const double star_a = phi(a) / larger(area_a, area_b * b_to_a * b_to_a);
+  const double star_b = phi(b) / larger(area_b, area_a / (b_to_a * b_to_a));
+  const double allowed = rules.kappa * pair.delta;
+  const double s_a = pair.scale_a * static_cast<double>(a.surface_deviation);
+  const double s_b = pair.scale_b * static_cast<double>(b.surface_deviation);
+  const double excess_a = larger(ratio(star_a, rules.s0), ratio(s_a, allowed));
+  const double excess_b = larger(ratio(star_b, rules.s0), ratio(s_b, allowed));
+  out.s_star = larger(star_a, star_b);
+  out.excess = larger(excess_a, excess_b);
+  out.refine_a = excess_a > 1 && a.children != 0;
+  out.refine_b = excess_b > 1 && b.children != 0;
+  return out;
+}
+
+bool splits_a(const PairState& pair, const Piece& a, const Piece& b, bool may_a,
+              bool may_b) noexcept {
+  if (!may_a || !may_b) return may_a;
+  const double child_a =
+      static_cast<double>(pair.image_a->pieces[a.first_child].resolution) / pair.scale_a;
+  const double child_b =
+      static_cast<double>(pair.image_b->pieces[b.first_child].resolution) / pair.scale_b;
+  if (child_a != child_b) return child_a < child_b;
+  return pair.scale_a * static_cast<double>(a.radius) >=
+         pair.scale_b * static_cast<double>(b.radius);
+}
+
+}  // namespace palpate::levels

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whole programs with a simulated device on USB: this project's and dfu-util, an implementation of
+// others. umockdev pretends that there is a device, a preloaded usbfs answers for it.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "../support/process.hpp"
+#include "../support/temporary_folder.hpp"
+#include "../support/tiny_image.hpp"
+
+namespace palpate {
+namespace {
+
+using nlohmann::json;
+
+/// Device and configuration descriptor, as tests/support/emulated_usbfs.cpp has them, in
+/// hexadecimal.
+constexpr const char* kDescriptors =
+    "12010002000000400912010000010000000109023E00020100803209040000"
+    "02FF504100"
+    "0705810340000207050103400002"
+    "0904010000FE0102000904010100FE010200092107000000041001";
+
+std::string description() {
+  const std::string descriptors = kDescriptors;
+  return "P: /devices/usb1/1-1\n"
+         "N: bus/usb/001/002=" +
+         descriptors +
+         "\nE: DEVNAME=/dev/bus/usb/001/002\nE: DEVTYPE=usb_device\nE: BUSNUM=001\nE: DEVNUM=002\n"
+         "E: SUBSYSTEM=usb\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum=2\\n\n"
+         "A: bNumConfigurations=1\\n\nA: idVendor=1209\\n\nA: idProduct=0001\\n\nA: speed=480\\n\n"
+         "H: descriptors=" +
+         descriptors + "\n";
+}
+
+class UsbProcess : public testing::Test {
+ protected:
+  UsbProcess() {
+    folder_.write("device.umockdev", description());
+    put_image("one.palp", 1.0);
+    put_image("two.palp", 2.0);
+  }
+  [[nodiscard]] std::string path(const std::string& name) const { return folder_.path() / name; }
+  void put_image(const std::string& name, double radius_m) const {
+    const auto bytes = test::seal(test::parts_of({test::ball_part(0.5f, 5, 8)}, radius_m));
+    folder_.write(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  }
+  /// A program with the device plugged in; what is in the device's flash stays from one to the
+  /// next.
+  [[nodiscard]] test::Outcome with_device(std::vector<std::string> command) const {
+    command.insert(command.begin(), {UMOCKDEV_RUN, "-d", path("device.umockdev"), "--",
+                                     "/usr/bin/env", "PALPATE_SHIM_FLASH=" + path("flash"),
+                                     "LD_PRELOAD=" PALPATE_SHIM " libumockdev-preload.so.0"});
+    return test::run(std::move(command));
+  }
+  [[nodiscard]] test::Outcome palpate(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), PALPATE_EXECUTABLE);
+    return with_device(std::move(arguments));
+  }
+  [[nodiscard]] test::Outcome dfu_util(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), DFU_UTIL);
+    return with_device(std::move(arguments));
+  }
+  /// A DFU file of an image for a product.
+  void emit(const std::string& image, const std::string& out, const std::string& product) const {
+    ASSERT_EQ(test::run({PALPATE_EXECUTABLE, "emit", path(image), "--as", "dfu", "--vendor-id",
+                         "0x1209", "--product-id", product, "-o", path(out)})
+                  .status,
+              0);
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(UsbProcess, device_is_listed_as_ready) {
+  const test::Outcome outcome = palpate({"devices", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json list = json::parse(outcome.out);
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0]["kind"], "usb");
+  EXPECT_EQ(list[0]["path"], "1-1");
+  EXPECT_EQ(list[0]["state"], "ready");
+}
+
+TEST_F(UsbProcess, flash_writes_the_slots_in_turn_and_switches) {
+  const test::Outcome first = palpate({"flash", path("one.palp"), "--device", "usb", "--verify"});
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_EQ(first.out, "Slot A holds the image, read back and compared; the device uses it.\n");
+  const test::Outcome second = palpate({"flash", path("two.palp"), "--device", "usb", "--verify"});
+  EXPECT_EQ(second.out, "Slot B holds the image, read back and compared; the device uses it.\n");
+  const test::Outcome again = palpate({"flash", path("two.palp"), "--device", "usb"});
+  EXPECT_EQ(again.out, "The device already uses this image, from slot B.\n");
+  const test::Outcome in_use =
+      palpate({"flash", path("one.palp"), "--device", "usb", "--slot", "B"});
+  EXPECT_EQ(in_use.status, 4);
+  EXPECT_NE(in_use.err.find("slot B is in use"), std::string::npos) << in_use.err;
+}
+
+TEST_F(UsbProcess, dfu_util_writes_and_reads_back_the_same_bytes) {
+  emit("one.palp", "one.dfu", "0x0001");
+  const test::Outcome written = dfu_util({"-a", "0", "-D", path("one.dfu")});
+  ASSERT_EQ(written.status, 0) << written.out << written.err;
+  const test::Outcome read = dfu_util({"-a", "0", "-U", path("back")});
+  ASSERT_EQ(read.status, 0) << read.err;
+  EXPECT_EQ(test::read_file(path("back")), test::read_file(path("one.palp")));
+  // And it is the one in use from the next start on.
+  const test::Outcome flashed = palpate({"flash", path("one.palp"), "--device", "usb"});
+  EXPECT_EQ(flashed.out, "The device already uses this image, from slot A.\n") << flashed.err;
+}
+
+TEST_F(UsbProcess, dfu_util_cannot_write_the_slot_in_use_or_what_is_no_image) {
+  ASSERT_EQ(palpate({"flash", path("one.palp"), "--device", "usb"}).status, 0);
+  emit("two.palp", "two.dfu", "0x0001");
+  EXPECT_NE(dfu_util({"-a", "0", "-D", path("two.dfu")}).status, 0);
+  std::string bad = test::read_file(path("two.palp"));
+  bad[700] = static_cast<char>(bad[700] ^ 1);
+  folder_.write("bad.raw", bad);
+  // It reports what the device says about the manifestation, whatever its exit status.
+  const test::Outcome refused = dfu_util({"-a", "1", "-D", path("bad.raw")});
+  EXPECT_NE(refused.out.find("dfuERROR"), std::string::npos) << refused.out;
+  const test::Outcome kept = palpate({"flash", path("one.palp"), "--device", "usb"});
+  EXPECT_EQ(kept.out, "The device already uses this image, from slot A.\n") << kept.err;
+}
+
+TEST_F(UsbProcess, dfu_util_refuses_a_file_for_another_product) {
+  emit("one.palp", "other.dfu", "0x0002");
+  const test::Outcome outcome = dfu_util({"-d", "1209:0001", "-a", "0", "-D", path("other.dfu")});
+  EXPECT_EQ(outcome.status, 64) << outcome.err;
+  EXPECT_NE(palpate({"flash", path("one.palp"), "--device", "usb"}).out.find("Slot A"),
+            std::string::npos);
+}
+
+constexpr const char* kScene = R"([engine]
+delta_m = 0.0005
+budget_us = 400.0
+[force]
+stiffness_N_per_m = 600.0
+max_force_N = 0.5
+[[body]]
+name = "tool"
+image = "cube.palp"
+role = "tool"
+position = [0.0102, 0.0, 0.0]
+[[body]]
+name = "base"
+image = "cube.palp"
+role = "fixed"
+)";
+
+// How late a tick is depends on the machine, so 0 and 5 are both right; at 50 Hz it may stand still
+// for 40 ms before the device gives the loop up.
+TEST_F(UsbProcess, run_feels_the_contact_through_the_device) {
+  const auto cube =
+      test::seal(test::parts_of({test::box_part({0, 0, 0}, {0.5f, 0.5f, 0.5f})}, 0.01));
+  folder_.write("cube.palp", {reinterpret_cast<const char*>(cube.data()), cube.size()});
+  folder_.write("scene.toml", kScene);
+  const test::Outcome outcome = palpate({"run", path("scene.toml"), "--device", "usb", "--seconds",
+                                         "4", "--rate", "50", "--json", "--quiet"});
+  ASSERT_TRUE(outcome.status == 0 || outcome.status == 5) << outcome.out << outcome.err;
+  const json j = json::parse(outcome.out);
+  EXPECT_EQ(j["state"], "rendering") << j["faults"];
+  EXPECT_GT(j["touching"].get<int>(), 0);
+  EXPECT_GT(j["force_N"]["max"].get<double>(), 0.01);
+  EXPECT_EQ(j["allocations"].is_null() ? 0 : j["allocations"].get<int>(), 0);
+}
+
+}  // namespace
+}  // namespace palpate
