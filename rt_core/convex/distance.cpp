@@ -276,10 +276,8 @@ template <std::uint32_t kCount>
 }
 
 /// The usual answer of a coherent pair, without a Search, whose making would double its cost: all
-/// points of the cached simplex still carry the nearest one, and the bounds meet. The same bits
-/// as search_from() would find.
-/// @param start  the cache's first point; where the answer is no, perhaps a better one to climb
-/// from
+/// kCount points of the cached simplex still carry the nearest one, and the bounds meet.
+/// @param start  where climbs start; where the answer is no, perhaps a better place
 template <std::uint32_t kCount>
 bool still_nearest(const HullPair& pair, const Cache& cache, double stop_above, VertexPair& start,
                    Distance& out) noexcept {
