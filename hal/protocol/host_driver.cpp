@@ -2,6 +2,8 @@
 #include "hal/protocol/host_driver.hpp"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <string>
 
 namespace palpate::hal::protocol {
@@ -58,11 +60,15 @@ std::optional<DeviceProblem> HostDriver::bring_up(Transport& transport) {
   if (auto problem = read_descriptor(transport, PacketType::capabilities, 0, capabilities_)) {
     return problem;
   }
-  if (capabilities_.joints > 0) {
-    return DeviceProblem{"descriptors", "the device sends joint counts and this host takes poses",
-                         "use firmware that computes poses"};
+  std::array<Joint, kMaxJoints> joints{};
+  for (std::uint8_t i = 0; i < capabilities_.joints; ++i) {
+    if (auto problem = read_descriptor(transport, PacketType::joint, i, joints[i])) return problem;
+    if (joints[i].index != i) {
+      return DeviceProblem{"descriptors", "it describes another joint than it was asked for",
+                           "update the device's firmware"};
+    }
   }
-  end_ = HostEnd(capabilities_);
+  chain_ = SerialChain(std::span(joints).first(capabilities_.joints));
   return std::nullopt;
 }
 
@@ -77,7 +83,7 @@ hal::Capabilities HostDriver::capabilities() const noexcept {
 }
 
 std::optional<DeviceProblem> HostDriver::begin(Transport& transport) {
-  end_ = HostEnd(capabilities_);
+  end_ = HostEnd(capabilities_, chain_);
   last_no_force_ns_ = 0;
   enabled_ = false;
   const ControlRequest request{kVendorOut, static_cast<std::uint8_t>(Request::session), 1,

@@ -35,6 +35,7 @@ class HostDriver final : public Driver {
 
  private:
   Capabilities capabilities_;
+  SerialChain chain_;
   HostEnd end_{capabilities_};
   std::uint64_t last_no_force_ns_ = 0;
   bool enabled_ = false;  ///< the last packet sent asked for a force

@@ -49,7 +49,8 @@ std::uint32_t faults_of(const State& s) {
 bool HostEnd::receive(std::span<const std::byte> packet, std::uint64_t arrival_ns,
                       DeviceState& out) noexcept {
   State s;
-  if (decode(packet, s) != PacketError::none || s.is_joint_state || s.sequence == 0) {
+  if (decode(packet, s) != PacketError::none || s.is_joint_state != (chain_.joints() > 0) ||
+      s.sequence == 0) {
     ++counters_.refused;
     return false;
   }
@@ -70,10 +71,13 @@ bool HostEnd::receive(std::span<const std::byte> packet, std::uint64_t arrival_n
 
   out.sequence = sequence_;
   out.time_ns = time_ns;
-  out.pose = {metres(s.position_nm), unit_quaternion(s.orientation)};
+  out.pose = s.is_joint_state ? chain_.pose(s.joint_counts)
+                              : Pose{metres(s.position_nm), unit_quaternion(s.orientation)};
   out.twist = {};
   out.buttons = s.buttons;
   out.faults = faults_of(s);
+  if (!chain_.is_within_ends(s.joint_counts)) out.faults |= kDeviceBadReading;
+  counts_ = s.joint_counts;
   return true;
 }
 
@@ -87,8 +91,15 @@ Packet HostEnd::command(const DeviceCommand& command, std::uint64_t now_ns) noex
   c.life_us =
       static_cast<std::uint32_t>(std::min<std::uint64_t>(left_us, capabilities_.max_life_us));
   c.enable = true;
-  c.force_uN = micro(command.wrench.force_N);
-  c.torque_uNm = micro(command.wrench.torque_Nm);
+  c.is_joint_command = chain_.joints() > 0;
+  if (c.is_joint_command) {
+    const JointTorques torques_Nm = chain_.torques(counts_, command.wrench);
+    std::transform(torques_Nm.begin(), torques_Nm.end(), c.joint_torque_uNm.begin(),
+                   [](double torque_Nm) { return micro(torque_Nm); });
+  } else {
+    c.force_uN = micro(command.wrench.force_N);
+    c.torque_uNm = micro(command.wrench.torque_Nm);
+  }
   // Back on the wire's count, where 0 is "none" and the very first commands have none to name.
   const std::uint64_t readings_since = sequence_ - std::min(sequence_, command.answers);
   c.answers =
@@ -101,6 +112,7 @@ Packet HostEnd::command(const DeviceCommand& command, std::uint64_t now_ns) noex
 
 Packet HostEnd::no_force() noexcept {
   Command c;
+  c.is_joint_command = chain_.joints() > 0;
   c.sequence = ++commands_;
   c.life_us = 1;
   return encode(c);

@@ -9,6 +9,7 @@
 #include "hal/device.hpp"
 #include "hal/protocol/clock_map.hpp"
 #include "hal/protocol/packets.hpp"
+#include "hal/protocol/serial_chain.hpp"
 
 namespace palpate::hal::protocol {
 
@@ -22,7 +23,9 @@ struct LinkCounters {
 
 class HostEnd {
  public:
-  explicit HostEnd(const Capabilities& capabilities) noexcept : capabilities_(capabilities) {}
+  /// @param chain  of a device with joints; without joints for one that sends poses
+  explicit HostEnd(const Capabilities& capabilities, const SerialChain& chain = {}) noexcept
+      : capabilities_(capabilities), chain_(chain) {}
 
   /// A packet that has come in. True, and `out` written, where it is a newer reading that can be
   /// relied on (the device is not homing). Packets that are refused or outdated are counted.
@@ -45,6 +48,8 @@ class HostEnd {
 
  private:
   Capabilities capabilities_;
+  SerialChain chain_;
+  JointCounts counts_{};  ///< of the newest reading
   ClockMap clock_map_;
   LinkCounters counters_;
   bool homing_ = false;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "host_bake/hull/growing_hull.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 
 namespace palpate::bake {
 namespace {
+
+constexpr std::size_t kFewFacets = 64;  // that are sooner tried one by one
 
 std::size_t corner_of(const Triangle& vertices, std::uint32_t v) {
   const std::size_t corner = vertices[0] == v ? 0 : vertices[1] == v ? 1 : 2;
@@ -53,6 +56,7 @@ void GrowingHull::start(std::span<const std::uint32_t> ring, bool real) {
   horizon_.clear();
   visit_ = 0;
   flat_ = true;
+  has_inner_ = false;
 
   // Upper side: the fan of ring[0]; lower side: the same triangles turned over, `above` further on.
   const auto above = static_cast<std::uint32_t>(ring.size() - 2);
@@ -71,16 +75,65 @@ void GrowingHull::start(std::span<const std::uint32_t> ring, bool real) {
   }
 }
 
-std::uint32_t GrowingHull::find_visible(std::uint32_t v, std::uint32_t near) const {
+std::uint32_t GrowingHull::find_visible(std::uint32_t v, std::uint32_t near) {
+  const bool start_near = near != kNone && has(near);
   std::uint32_t found = kNone;
-  if (near != kNone && has(near))
+  if (start_near)
     around(near, [&](std::uint32_t f) {
       if (side(facets_[f], v) > 0) found = f;
       return found != kNone;
     });
+  if (found != kNone) return found;
+  if (!flat_ && facets_.size() > kFewFacets && (has_inner_ || find_inner())) {
+    std::uint32_t from = start_near ? facet_of_[near] : 0;
+    while (!facets_[from].alive) ++from;
+    const std::uint32_t below = find_below(v, from);
+    if (below != kNone) return side(facets_[below], v) > 0 ? below : kNone;
+  }
   for (std::uint32_t f = 0; found == kNone && f < facets_.size(); ++f)
     if (facets_[f].alive && side(facets_[f], v) > 0) found = f;
   return found;
+}
+
+/// A point strictly below all facets. False where none is found: the hull is thin.
+bool GrowingHull::find_inner() {
+  std::array<double, 3> sum{};
+  double corners = 0;
+  for (const Facet& facet : facets_) {
+    if (!facet.alive) continue;
+    for (const std::uint32_t v : facet.vertices)
+      for (std::size_t i = 0; i < 3; ++i) sum[i] += static_cast<double>(points_[v][i]);
+    corners += 3;
+  }
+  for (std::size_t i = 0; i < 3; ++i) inner_[i] = static_cast<float>(sum[i] / corners);
+  has_inner_ = std::all_of(facets_.begin(), facets_.end(), [&](const Facet& facet) {
+    const Triangle& t = facet.vertices;
+    return !facet.alive || orient_3d(points_[t[0]], points_[t[1]], points_[t[2]], inner_) < 0;
+  });
+  inner_since_ = steps_.size();
+  return has_inner_;
+}
+
+/// Walks to a facet that v sees, or to the one through which the ray from inner_ to v leaves the
+/// hull: where v does not see that one it is in the hull. kNone where the walk goes round in a
+/// plane.
+///
+/// From facet to facet the ray's parameter at their planes falls (the triangulation is the central
+/// projection of a convex surface), except between facets of one plane.
+std::uint32_t GrowingHull::find_below(std::uint32_t v, std::uint32_t from) const {
+  for (std::size_t step = 0; step < facets_.size(); ++step) {
+    const Facet& facet = facets_[from];
+    if (side(facet, v) > 0) return from;
+    std::uint32_t next = kNone;
+    for (std::size_t k = 0; next == kNone && k < 3; ++k) {
+      const std::size_t i = (step + k) % 3;  // so that ways round in a plane are soon left
+      const std::uint32_t a = facet.vertices[i], b = facet.vertices[(i + 1) % 3];
+      if (orient_3d(inner_, points_[a], points_[b], points_[v]) < 0) next = facet.neighbours[i];
+    }
+    if (next == kNone) return from;
+    from = next;
+  }
+  return kNone;
 }
 
 /// Logs the facets that v sees, and their horizon. False where one of them is real.
@@ -212,6 +265,7 @@ void GrowingHull::mark_real(const Triangle& plane, std::uint32_t near) {
 void GrowingHull::drop_step() {
   const Step step = steps_.back();
   steps_.pop_back();
+  if (steps_.size() < inner_since_) has_inner_ = false;
   for (std::size_t m = step.marked; m < marked_.size(); ++m) facets_[marked_[m]].real = false;
   for (std::size_t a = added_.size(); a-- > step.added;) {
     facets_[added_[a]].alive = false;
@@ -243,6 +297,7 @@ void GrowingHull::commit() {
   added_.clear();
   marked_.clear();
   steps_.clear();
+  inner_since_ = 0;
 }
 
 std::vector<Triangle> GrowingHull::triangles() const {

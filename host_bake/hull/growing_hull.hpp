@@ -24,7 +24,8 @@ namespace palpate::bake {
 /// strictly outside it are left out, and vertices may cease to be extreme but stay;
 /// canonical_hull() drops those.
 ///
-/// Cost of insert(): the facets it sees plus the star of the vertex near which it starts to look.
+/// Cost of insert(): the facets it sees, the star of the vertex near which it starts to look, and
+/// where nothing is seen from there, a walk to the facet below the vertex.
 class GrowingHull {
  public:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -92,7 +93,9 @@ class GrowingHull {
   [[nodiscard]] int side(const Triangle& plane, std::uint32_t v) const;
   template <class Visit>
   void around(std::uint32_t v, Visit visit) const;
-  [[nodiscard]] std::uint32_t find_visible(std::uint32_t v, std::uint32_t near) const;
+  [[nodiscard]] std::uint32_t find_visible(std::uint32_t v, std::uint32_t near);
+  [[nodiscard]] std::uint32_t find_below(std::uint32_t v, std::uint32_t from) const;
+  [[nodiscard]] bool find_inner();
   [[nodiscard]] bool collect_visible(std::uint32_t v, std::uint32_t first);
   void open_step(std::uint32_t vertex);
   void drop_step();
@@ -108,6 +111,9 @@ class GrowingHull {
   std::vector<std::uint32_t> used_;  // vertices whose facet_of_ has been set since start()
   bool flat_ = true;
   std::uint32_t visit_ = 0;
+  PointF inner_{};  // strictly inside, where has_inner_
+  bool has_inner_ = false;
+  std::size_t inner_since_ = 0;  // steps that had been taken when it was found
 
   std::vector<Step> steps_;
   std::vector<std::uint32_t> removed_, added_, marked_;

@@ -12,11 +12,6 @@
 namespace palpate::bake {
 namespace {
 
-using Corners = std::array<PointF, 3>;
-
-// Faces from which on a collapse inside a patch is judged by the virtual facets alone.
-constexpr std::size_t kLargePatch = 48;
-
 // Of a patch that is not much larger than a ring.
 constexpr std::size_t kFewPoints = 24;
 
@@ -53,10 +48,6 @@ bool cross_each_other(const Corners& a, const Corners& b) {
   return triangles_cross(exact(a), exact(b));
 }
 
-bool enters(ShrunkHull& hull, const Corners& c) {
-  return hull.entered_by(position(c[0]), position(c[1]), position(c[2]));
-}
-
 FaceBox box_of(const Corners& c) { return palpate::bake::box_of(c[0], c[1], c[2]); }
 
 }  // namespace
@@ -75,14 +66,12 @@ Constraints::Constraints(const Surface& surface, const PatchLists& patches)
       faces_(surface.faces.size()),
       boxes_(patches.count()),
       near_faces_(faces_),
-      hulls_(patches.count()),
-      kinds_(patches.count(), HullKind::unknown),
-      facets_(patches.count()) {
+      bodies_(patches, gatherer_, builder_) {
   for (std::uint32_t f = 0; f < surface.faces.size(); ++f) faces_.put(f, box_of(corners(f)));
   for (std::uint32_t p = 0; p < patches.count(); ++p) {
     const std::array<std::uint32_t, 1> one = {p};
-    gatherer_.gather(patches_, one, nullptr, other_);
-    place(p, palpate::bake::box_of(other_.points));
+    gatherer_.gather(patches_, one, nullptr, merged_.shape);
+    place(p, palpate::bake::box_of(merged_.shape.points));
   }
 }
 
@@ -112,6 +101,8 @@ bool Constraints::is_affected(std::uint32_t patch) const {
 }
 
 void Constraints::begin(const Ring& ring) {
+  for (std::size_t i = 0; i < affected_count_; ++i)
+    if (OuterHull* outer = bodies_.known_growing(affected_[i].shape.patch)) outer->take_back();
   ring_ = &ring;
   affected_count_ = 0;
   const auto add = [this](std::uint32_t half_edge) {
@@ -129,8 +120,7 @@ void Constraints::begin(const Ring& ring) {
     const std::uint32_t patch = a.shape.patch;
     a.kind = HullKind::unknown;
     a.closed = patches_.closed(patch);
-    a.inner = affected_count_ == 1;
-    a.locally = false;
+    a.within = false;
     if (a.closed) continue;
     const std::array<std::uint32_t, 1> one = {patch};
     gatherer_.gather(patches_, one, &ring, a.shape);
@@ -217,62 +207,109 @@ bool Constraints::visible(const Affected& affected) const {
   return false;
 }
 
-bool Constraints::entered_by_unchanged(const Affected& affected, ShrunkHull& hull,
-                                       const FaceBox& box) {
-  return near_faces_.search(box, [&](std::uint32_t f) {
-    if (patches_.of(f) == affected.shape.patch) return false;
-    if (f == ring_->edge / 3 || f == ring_->twin / 3) return false;
-    const Face& face = surface_.faces[f];
-    for (const std::uint32_t v : face)
-      if (v == ring_->kept || v == ring_->removed) return false;
-    return enters(hull, corners(f));
-  });
+/// The face is alive, and the collapse leaves it as it is.
+bool Constraints::stays(std::uint32_t face) const {
+  if (!surface_.alive(face) || face == ring_->edge / 3 || face == ring_->twin / 3) return false;
+  const Face& corners = surface_.faces[face];
+  return std::none_of(corners.begin(), corners.end(),
+                      [this](std::uint32_t v) { return v == ring_->kept || v == ring_->removed; });
 }
 
-/// The virtual facets stay as they are: the collapse is inside a large patch and below them.
-bool Constraints::grows_locally(const Affected& affected) {
-  if (affected.closed) return true;
-  const std::uint32_t patch = affected.shape.patch;
-  if (!affected.inner || affected.shape.faces.size() < kLargePatch) return false;
-  if (!facets_[patch]) {
-    kinds_[patch] = HullKind::unknown;  // facets are found with the hull
-    if (hull_of(patch) == nullptr) return false;
-  }
-  const VirtualFacets& facets = *facets_[patch];
-  return !facets.has_corner(ring_->kept) && !facets.has_corner(ring_->removed) &&
-         facets.clearly_below(position_);
+/// As BoxTree::search(), for faces that stay as they are and are not of the patch.
+template <class Visit>
+bool Constraints::search_unchanged(std::uint32_t patch, const FaceBox& box, Visit visit) {
+  return near_faces_.search(
+      box, [&](std::uint32_t f) { return patches_.of(f) != patch && stays(f) && visit(f); });
 }
 
+bool Constraints::entered_by_unchanged(std::uint32_t patch, ShrunkHull& hull, const FaceBox& box) {
+  return search_unchanged(patch, box, [&](std::uint32_t f) { return enters(hull, corners(f)); });
+}
+
+/// The patch stays convex all over, so the hull grows by no more than that of the new vertex and
+/// its ring.
 bool Constraints::grown_part_is_entered(Affected& affected) {
   std::vector<PointF> points = {position_};
   for (const std::uint32_t v : ring_->vertices) points.push_back(surface_.points[v]);
   if (builder_.build(points, affected.hull) == HullKind::empty) return false;
-  return entered_by_unchanged(affected, affected.hull, palpate::bake::box_of(points));
+  return entered_by_unchanged(affected.shape.patch, affected.hull, palpate::bake::box_of(points));
 }
 
-/// The new vertex is inside the hull known before, so nothing but changed faces of others can enter
-/// the new one.
+/// The new vertex is in the hull known before, so nothing but changed faces of others can enter the
+/// new one. False decides nothing.
 bool Constraints::stays_within(const Affected& affected) {
+  const std::uint32_t patch = affected.shape.patch;
+  ShrunkHull* hull = bodies_.known(patch);
+  if (hull == nullptr || hull->thin() || !hull->holds(palpate::bake::position(position_)))
+    return false;
+  for (std::size_t i = 0; i < ring_->faces(); ++i)
+    if (patches_.of(ring_->spokes[i] / 3) != patch && enters(*hull, corners_after(i))) return false;
+  return true;
+}
+
+/// A face enters the body about the new hull: does it enter that hull?
+Entry Constraints::admit(const PatchShape& shape, std::uint32_t face, const Corners& at) {
+  if (!lazy_started_) {
+    near_.clear();
+    for (std::uint32_t f = 0; f < shape.faces.size(); ++f)
+      if (shape.changed[f])
+        near_.insert(near_.end(), shape.corners[f].begin(), shape.corners[f].end());
+    lazy_.start(shape.points, near_);
+    lazy_started_ = true;
+  }
+  const Entry entry = lazy_.entered_by(at);
+  if (entry == Entry::no) bodies_.known_growing(shape.patch)->admit(face, lazy_.keepers());
+  return entry;
+}
+
+/// The body known before grows by the new vertex. What enters the body is asked whether it enters
+/// the new hull: changed faces, guests that the new vertex may have reached, and what is where the
+/// body grows.
+Entry Constraints::large_hull_is_entered(const Affected& affected) {
   const PatchShape& shape = affected.shape;
   const std::uint32_t patch = shape.patch;
-  if (affected.closed || shape.faces.empty()) return false;
-  if (kinds_[patch] != HullKind::solid && kinds_[patch] != HullKind::outer) return false;
-  ShrunkHull& hull = *hulls_[patch];
-  if (hull.thin() || !hull.holds(palpate::bake::position(position_))) return false;
-  if (!clearly_solid(shape.points)) return false;  // else it must fill a polygon
-  for (std::size_t i = 0; i < ring_->faces(); ++i)
-    if (patches_.of(ring_->spokes[i] / 3) != patch && enters(hull, corners_after(i))) return false;
-  return true;
+  OuterHull* outer = bodies_.growing(patch);
+  if (outer == nullptr) return Entry::unknown;
+  lazy_started_ = false;
+  OuterHull::Part* part = outer->grow(position_, builder_);
+  for (std::size_t i = 0; i < ring_->faces(); ++i) {
+    const std::uint32_t face = ring_->spokes[i] / 3;
+    const Corners now = corners_after(i);
+    if (patches_.of(face) == patch || !bodies_.body_entered_by(patch, now)) continue;
+    if (const Entry entry = admit(shape, face, now); entry != Entry::no) return entry;
+  }
+  for (const OuterHull::Guest& guest : outer->guests()) {
+    if (guest.stays_out(position_) || !stays(guest.face) || patches_.of(guest.face) == patch)
+      continue;
+    if (const Entry entry = admit(shape, guest.face, corners(guest.face)); entry != Entry::no)
+      return entry;
+  }
+  Entry entry = Entry::no;
+  if (part != nullptr)
+    search_unchanged(patch, part->grown, [&](std::uint32_t f) {
+      if (enters(part->hull, corners(f))) entry = admit(shape, f, corners(f));
+      return entry != Entry::no;
+    });
+  return entry;
 }
 
 bool Constraints::hull_is_entered(Affected& affected) {
   const PatchShape& shape = affected.shape;
-  affected.locally = false;
-  affected.within = stays_within(affected);
-  if (affected.within) return false;
-  affected.locally = grows_locally(affected);
-  if (affected.locally) return grown_part_is_entered(affected);
+  affected.within = false;
+  if (affected.closed) return grown_part_is_entered(affected);
   if (shape.faces.empty()) return false;
+  OuterHull* outer = bodies_.known_growing(shape.patch);
+  if (outer != nullptr) outer->take_back();
+  if (clearly_solid(shape.points)) {  // else it must fill a polygon
+    Entry entry = Entry::unknown;
+    if (outer != nullptr || PatchBodies::is_large(shape.faces.size())) {
+      entry = large_hull_is_entered(affected);
+    } else if (stays_within(affected)) {
+      entry = Entry::no;
+    }
+    affected.within = entry == Entry::no;
+    if (entry != Entry::unknown) return entry == Entry::yes;
+  }
   FaceBox grown;
   affected.kind = builder_.build(shape, ring_, gatherer_, affected.hull, grown);
   if (affected.kind == HullKind::empty) return false;
@@ -280,26 +317,7 @@ bool Constraints::hull_is_entered(Affected& affected) {
   for (std::size_t i = 0; i < ring_->faces(); ++i)
     if (patches_.of(ring_->spokes[i] / 3) != shape.patch && enters(affected.hull, corners_after(i)))
       return true;
-  return entered_by_unchanged(affected, affected.hull, grown);
-}
-
-ShrunkHull* Constraints::hull_of(std::uint32_t patch) {
-  if (kinds_[patch] == HullKind::unknown) {
-    const std::array<std::uint32_t, 1> one = {patch};
-    gatherer_.gather(patches_, one, nullptr, other_);
-    FaceBox all;
-    kinds_[patch] = builder_.build(other_, nullptr, gatherer_, other_hull_, all);
-    if (kinds_[patch] != HullKind::solid) {
-      hulls_[patch].reset();
-      return nullptr;
-    }
-    hulls_[patch] = std::make_unique<ShrunkHull>(other_hull_);  // without the scratch's capacity
-    if (other_.faces.size() >= kLargePatch) {
-      facets_[patch] = std::make_unique<VirtualFacets>();
-      facets_[patch]->set(other_, builder_.last());
-    }
-  }
-  return hulls_[patch].get();
+  return entered_by_unchanged(affected.shape.patch, affected.hull, grown);
 }
 
 /// The changed faces, and a box about them all.
@@ -319,19 +337,9 @@ bool Constraints::enters_others() {
     const FaceBox& box = boxes_.box(patch);
     return std::any_of(star_.begin(), star_.end(), [&](const StarFace& face) {
       if (!face.box.meets(box)) return false;
-      if (facets_[patch] && facets_[patch]->separate(face.corners)) return false;
-      return is_entered(patch, face.corners);
+      return bodies_.entered_by(patch, face.corners);
     });
   });
-}
-
-bool Constraints::is_entered(std::uint32_t patch, const Corners& face) {
-  ShrunkHull* hull = hull_of(patch);
-  if (hull == nullptr || !enters(*hull, face)) return false;
-  if (kinds_[patch] != HullKind::outer) return true;
-  kinds_[patch] = HullKind::unknown;
-  hull = hull_of(patch);
-  return hull != nullptr && enters(*hull, face);
 }
 
 bool Constraints::crosses() {
@@ -357,8 +365,6 @@ void Constraints::follow_collapse() {
   for (std::size_t i = 0; i < affected_count_; ++i) {
     Affected& a = affected_[i];
     const std::uint32_t patch = a.shape.patch;
-    kinds_[patch] = a.within ? HullKind::outer : a.locally ? HullKind::unknown : a.kind;
-    if (!a.locally) facets_[patch].reset();
     if (a.closed) {
       FaceBox box = boxes_.box(patch);  // may be too large from now on, never too small
       box.add(position_);
@@ -367,61 +373,15 @@ void Constraints::follow_collapse() {
     }
     if (a.shape.faces.empty()) {
       boxes_.take(patch);
-      hulls_[patch].reset();
+      bodies_.forget(patch);
       continue;
     }
     place(patch, palpate::bake::box_of(a.shape.points));
-    if (kinds_[patch] == HullKind::solid) {
-      hulls_[patch] = std::make_unique<ShrunkHull>(a.hull);
-    } else if (kinds_[patch] != HullKind::outer) {
-      hulls_[patch].reset();
+    if (a.within) {
+      bodies_.keep(patch);
+    } else {
+      bodies_.set(patch, a.kind, a.shape.faces.size(), a.hull);
     }
-  }
-}
-
-/// Each of two patches is below its own planes; is it below the other's? Tells first for the faces
-/// of the smaller one.
-bool Constraints::below_each_other(std::uint32_t a, std::uint32_t b) {
-  if (patches_.size(a) < patches_.size(b)) std::swap(a, b);
-  const std::array<std::uint32_t, 2> both = {a, b};
-  gatherer_.gather(patches_, both, nullptr, merged_.shape);
-  const PatchShape& shape = merged_.shape;
-  const std::uint32_t faces = patches_.size(a);
-  std::uint32_t points = 0;  // of the larger patch: they come first
-  for (std::uint32_t f = 0; f < faces; ++f)
-    for (const std::uint32_t v : shape.corners[f]) points = std::max(points, v + 1);
-  merged_.planes.set(shape);
-  const auto all = static_cast<std::uint32_t>(shape.points.size());
-  for (auto f = faces; f < shape.faces.size(); ++f)
-    if (merged_.planes.any_above(shape, f, 0, points)) return false;
-  for (std::uint32_t f = 0; f < faces; ++f)
-    if (merged_.planes.any_above(shape, f, points, all)) return false;
-  return true;
-}
-
-bool Constraints::may_merge(std::uint32_t a, std::uint32_t b) {
-  if (!below_each_other(a, b)) return false;
-  const PatchShape& shape = merged_.shape;
-  FaceBox all;
-  merged_.kind = builder_.build(shape, nullptr, gatherer_, merged_.hull, all);
-  if (merged_.kind == HullKind::refused) return false;
-  if (merged_.kind == HullKind::empty) return true;
-  return !faces_.search(all, [&](std::uint32_t f) {
-    return patches_.of(f) != a && patches_.of(f) != b && enters(merged_.hull, corners(f));
-  });
-}
-
-void Constraints::follow_merge(std::uint32_t kept, std::uint32_t gone) {
-  boxes_.take(gone);
-  hulls_[gone].reset();
-  place(kept, palpate::bake::box_of(merged_.shape.points));
-  kinds_[kept] = merged_.kind;
-  facets_[kept].reset();
-  facets_[gone].reset();
-  if (merged_.kind == HullKind::solid) {
-    hulls_[kept] = std::make_unique<ShrunkHull>(merged_.hull);
-  } else {
-    hulls_[kept].reset();
   }
 }
 

@@ -9,13 +9,14 @@
 #include <vector>
 
 #include "host_bake/simplify/box_tree.hpp"
+#include "host_bake/simplify/lazy_hull.hpp"
 #include "host_bake/simplify/near_boxes.hpp"
+#include "host_bake/simplify/patch_bodies.hpp"
 #include "host_bake/simplify/patch_hulls.hpp"
 #include "host_bake/simplify/patch_lists.hpp"
 #include "host_bake/simplify/patch_shape.hpp"
 #include "host_bake/simplify/shape_planes.hpp"
 #include "host_bake/simplify/surface.hpp"
-#include "host_bake/simplify/virtual_facets.hpp"
 
 namespace palpate::bake {
 
@@ -63,36 +64,37 @@ class Constraints {
     ShrunkHull hull;
     HullKind kind = HullKind::unknown;
     bool closed = false;
-    bool inner = false;    // all that changes belongs to the patch
-    bool locally = false;  // the last judgement did without the whole hull
-    bool within = false;   // the hull known before holds the new one
+    bool within = false;  // the body known before, and grown, holds the new hull
   };
 
   struct StarFace {
-    std::array<PointF, 3> corners;
+    Corners corners;
     FaceBox box;
     std::uint32_t patch;
   };
 
-  [[nodiscard]] std::array<PointF, 3> corners_after(std::size_t ring_face) const;
-  [[nodiscard]] std::array<PointF, 3> corners(std::uint32_t face) const;
+  [[nodiscard]] Corners corners_after(std::size_t ring_face) const;
+  [[nodiscard]] Corners corners(std::uint32_t face) const;
   [[nodiscard]] bool is_affected(std::uint32_t patch) const;
   [[nodiscard]] Refusal judge_faces() const;
   [[nodiscard]] Refusal judge_edges() const;
   [[nodiscard]] bool visible(const Affected& affected) const;
   [[nodiscard]] bool hull_is_entered(Affected& affected);
-  [[nodiscard]] bool entered_by_unchanged(const Affected& affected, ShrunkHull& hull,
+  [[nodiscard]] bool stays(std::uint32_t face) const;
+  template <class Visit>
+  bool search_unchanged(std::uint32_t patch, const FaceBox& box, Visit visit);
+  [[nodiscard]] bool entered_by_unchanged(std::uint32_t patch, ShrunkHull& hull,
                                           const FaceBox& box);
+  [[nodiscard]] Entry admit(const PatchShape& shape, std::uint32_t face, const Corners& at);
   [[nodiscard]] FaceBox place_of_hulls() const;
   void set_star();
-  [[nodiscard]] bool below_each_other(std::uint32_t a, std::uint32_t b);
+  [[nodiscard]] bool below_each_other(std::uint32_t large, std::uint32_t small);
+  [[nodiscard]] bool merges_within(std::uint32_t large, std::uint32_t small);
   [[nodiscard]] bool enters_others();
   [[nodiscard]] bool crosses();
   [[nodiscard]] bool stays_within(const Affected& affected);
-  [[nodiscard]] bool is_entered(std::uint32_t patch, const std::array<PointF, 3>& corners);
-  [[nodiscard]] bool grows_locally(const Affected& affected);
+  [[nodiscard]] Entry large_hull_is_entered(const Affected& affected);
   [[nodiscard]] bool grown_part_is_entered(Affected& affected);
-  [[nodiscard]] ShrunkHull* hull_of(std::uint32_t patch);
   void place(std::uint32_t patch, const FaceBox& box);
 
   const Surface& surface_;
@@ -101,9 +103,7 @@ class Constraints {
   HullBuilder builder_;
   BoxTree faces_, boxes_;
   NearBoxes near_faces_;
-  std::vector<std::unique_ptr<ShrunkHull>> hulls_;      // by patch, where solid
-  std::vector<HullKind> kinds_;                         // by patch
-  std::vector<std::unique_ptr<VirtualFacets>> facets_;  // by patch, of large ones
+  PatchBodies bodies_;
 
   const Ring* ring_ = nullptr;
   PointF position_{};
@@ -112,8 +112,10 @@ class Constraints {
   std::vector<StarFace> star_;
   FaceBox star_box_;
   Affected merged_;
-  PatchShape other_;
-  ShrunkHull other_hull_;
+  std::uint32_t merged_first_ = 0;  // points of the larger one; they come first
+  LazyHull lazy_;
+  bool lazy_started_ = false;        // for the patch judged now
+  std::vector<std::uint32_t> near_;  // local vertices, for lazy_
 };
 
 }  // namespace palpate::bake

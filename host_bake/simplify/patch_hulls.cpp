@@ -16,6 +16,14 @@ constexpr float kMargin = 3e-7F;        // kShrink_rel and rounding of floats be
 
 }  // namespace
 
+FaceBox with_margin(FaceBox box) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    box.low[i] -= kMargin;
+    box.high[i] += kMargin;
+  }
+  return box;
+}
+
 /// From the first face with area that has not the point `without`; false where there is none.
 bool HullBuilder::start(std::span<const PointF> points, std::span<const Triangle> faces,
                         std::uint32_t without) {
@@ -24,6 +32,7 @@ bool HullBuilder::start(std::span<const PointF> points, std::span<const Triangle
     hull_.emplace(points_);
   }
   std::copy(points.begin(), points.end(), points_.begin());
+  used_ = kept_ = static_cast<std::uint32_t>(points.size());
   for (const Triangle& f : faces) {
     if (f[0] == without || f[1] == without || f[2] == without) continue;
     if (collinear(points[f[0]], points[f[1]], points[f[2]])) continue;
@@ -109,10 +118,7 @@ bool HullBuilder::insert_apex_last(const PatchShape& shape, const Ring* ring,
   for (const std::uint32_t f : hull_->replaced())
     for (const std::uint32_t v : hull_->slots()[f].vertices) out_grown.add(shape.points[v]);
   // Facets that are inside now kept things kShrink_rel away from the shrunk hull.
-  for (std::size_t i = 0; i < 3; ++i) {
-    out_grown.low[i] -= kMargin;
-    out_grown.high[i] += kMargin;
-  }
+  out_grown = with_margin(out_grown);
   return true;
 }
 
@@ -130,6 +136,33 @@ HullKind HullBuilder::build(const PatchShape& shape, const Ring* ring, ShapeGath
   }
   if (!fills_polygon(shape, ring, gatherer)) return HullKind::refused;
   return hull_->flat() ? HullKind::empty : HullKind::solid;
+}
+
+bool HullBuilder::add(const PointF& point, std::vector<PointF>& out_grown) {
+  if (used_ == kept_) hull_->commit();
+  const std::size_t seen = hull_->replaced().size();
+  points_[used_] = point;
+  static_cast<void>(hull_->insert(used_, GrowingHull::kNone));
+  if (!hull_->has(used_)) return false;
+  ++used_;
+  std::vector<std::uint32_t> corners;
+  for (const std::uint32_t f : hull_->replaced().subspan(seen))
+    for (const std::uint32_t v : hull_->slots()[f].vertices) corners.push_back(v);
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  for (const std::uint32_t v : corners) out_grown.push_back(points_[v]);
+  out_grown.push_back(point);
+  return true;
+}
+
+void HullBuilder::keep() {
+  hull_->commit();
+  kept_ = used_;
+}
+
+void HullBuilder::take_back() {
+  hull_->rollback(0);
+  used_ = kept_;
 }
 
 HullKind HullBuilder::build(std::span<const PointF> points, ShrunkHull& out_hull) {

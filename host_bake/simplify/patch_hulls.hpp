@@ -19,6 +19,9 @@ enum class HullKind : std::uint8_t {
   refused,  ///< no interior, but the patch does not fill it
 };
 
+/// The box with room for kShrink_rel and the rounding of floats.
+FaceBox with_margin(FaceBox box);
+
 /// Builds hulls of shapes, with the scratch that takes.
 class HullBuilder {
  public:
@@ -31,8 +34,14 @@ class HullBuilder {
   /// The hull of the points alone; empty where flat.
   HullKind build(std::span<const PointF> points, ShrunkHull& out_hull);
 
-  /// Of the solid hull built last.
-  [[nodiscard]] const GrowingHull& last() const { return *hull_; }
+  /// To the solid hull of a shape built last further points can be added, as long as there is room:
+  /// at least as many as it has. add() gives the point and the corners of the facets that it saw;
+  /// false where it is in the hull.
+  [[nodiscard]] bool has_room() const { return used_ < points_.size(); }
+  [[nodiscard]] bool add(const PointF& point, std::vector<PointF>& out_grown);
+  /// Makes the points added since the last keep() final, or takes them away.
+  void keep();
+  void take_back();
 
  private:
   [[nodiscard]] bool start(std::span<const PointF> points, std::span<const Triangle> faces,
@@ -48,6 +57,8 @@ class HullBuilder {
                                    ShapeGatherer& gatherer);
 
   std::vector<PointF> points_;  // what hull_ spans
+  std::uint32_t used_ = 0;      // of points_
+  std::uint32_t kept_ = 0;      // of those
   std::optional<GrowingHull> hull_;
 };
 

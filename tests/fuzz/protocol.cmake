@@ -15,7 +15,8 @@ if(PALPATE_FUZZ)
   endfunction()
 
   file(GLOB protocol_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/hal/protocol/*.cpp")
-  hal_fuzz(protocol_fuzz fuzz/protocol_fuzz.cpp ${protocol_sources})
+  hal_fuzz(protocol_fuzz fuzz/protocol_fuzz.cpp ${protocol_sources}
+    "${PROJECT_SOURCE_DIR}/hal/transport/transport.cpp")
   hal_fuzz(falcon_fuzz fuzz/falcon_fuzz.cpp "${PROJECT_SOURCE_DIR}/hal/falcon/messages.cpp"
     "${PROJECT_SOURCE_DIR}/hal/falcon/ftdi.cpp" "${PROJECT_SOURCE_DIR}/hal/falcon/kinematics.cpp")
 endif()

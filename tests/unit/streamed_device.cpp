@@ -250,10 +250,11 @@ TEST(StreamedDevice, wrong_descriptors_are_refused_with_the_reason) {
             "its answer is refused, not a packet of this protocol");
   EXPECT_EQ(cause_of(Impostor({IoStatus::stalled})), "refused by the device");
   EXPECT_EQ(cause_of(Impostor({IoStatus::timed_out})), "no answer in time");
+  // Asked for a joint it answers with its capabilities again.
   protocol::Capabilities joints = OpenDeviceOptions::default_capabilities();
   joints.joints = 6;
   EXPECT_EQ(cause_of(Impostor({IoStatus::ok, 64}, protocol::encode(joints))),
-            "the device sends joint counts and this host takes poses");
+            "its answer is refused, another type of packet");
 }
 
 TEST(StreamedDevice, start_before_open_is_refused) {
