@@ -14,8 +14,8 @@ namespace palpate::cli {
 namespace {
 
 // Pixels of the finished picture.
-constexpr int kPanelWidth = 300;
-constexpr int kMinPanelHeight = 90, kMaxPanelHeight = 300;
+constexpr int kPanelWidth = 280;
+constexpr int kMinPanelHeight = 90, kMaxPanelHeight = 280;
 constexpr int kMargin = 10;
 constexpr int kTextScale = 2;
 constexpr int kLine = kTextScale * (picture::kLetterHeight + 1);
@@ -23,8 +23,14 @@ constexpr int kLine = kTextScale * (picture::kLetterHeight + 1);
 constexpr std::size_t kColumns = 3;
 constexpr int kSamples = 3;  // a pixel and direction
 
+constexpr picture::Rgb kPlain{200, 200, 196};
+
 using Caption = std::array<std::string, 3>;
 constexpr int kCaption = kLine * int{std::tuple_size_v<Caption>};
+
+bool is_original(const ImageView& image, std::uint32_t level) {
+  return level == 0 && image.header->dropped_levels == 0;
+}
 
 Caption caption_of(const ImageView& image, std::uint32_t index) {
   const image::Level& level = image.levels[index];
@@ -34,17 +40,17 @@ Caption caption_of(const ImageView& image, std::uint32_t index) {
   std::array<char, 32> resolution{};
   std::snprintf(resolution.data(), resolution.size(), ", r %.1f",
                 static_cast<double>(level.resolution));
-  const bool original = index == 0 && image.header->dropped_levels == 0;
-  return {original ? "original" : "level " + std::to_string(index),
+  return {is_original(image, index) ? "original" : "level " + std::to_string(index),
           std::to_string(level.triangles) + " triangles", pieces + resolution.data()};
 }
 
-picture::Raster panel(const LevelMesh& mesh, const picture::View& view,
+picture::Raster panel(const LevelMesh& mesh, bool plain, const picture::View& view,
                       const picture::Bounds& bounds, int height) {
-  std::vector<picture::Rgb> colours;
-  colours.reserve(mesh.faces.size());
-  for (const auto& face : mesh.faces) {
-    colours.push_back(picture::colour_of(mesh.piece_of_point[face[0]]));
+  std::vector<picture::Rgb> colours(mesh.faces.size(), kPlain);
+  if (!plain) {
+    std::transform(mesh.faces.begin(), mesh.faces.end(), colours.begin(), [&mesh](const auto& f) {
+      return picture::colour_of(mesh.piece_of_point[f[0]]);
+    });
   }
   picture::Raster raster(kSamples * kPanelWidth, kSamples * height);
   picture::draw(raster, view, bounds, {mesh.points, mesh.faces, colours});
@@ -88,7 +94,8 @@ picture::Raster level_picture(const ImageView& image, const std::vector<std::uin
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const int left = kMargin + static_cast<int>(i % kColumns) * across;
     int top = kMargin + static_cast<int>(i / kColumns) * down;
-    picture::paste(sheet, panel(meshes[i], view, bounds, height), left, top);
+    picture::paste(sheet, panel(meshes[i], is_original(image, levels[i]), view, bounds, height),
+                   left, top);
     top += height + kMargin;
     for (const std::string& line : caption_of(image, levels[i])) {
       picture::draw_text(sheet, left, top, kTextScale, line);

@@ -15,8 +15,9 @@ namespace palpate::cli {
 /// way to the coarsest simplified one, and that; of the free ones one half way up, and the root.
 std::vector<std::uint32_t> shown_levels(const ImageView& image);
 
-/// These levels, three a row, all from the same direction and at the same scale, every piece in a
-/// colour of its own (that of level_ply()), each with a caption: level, triangles, pieces, r.
+/// These levels, three a row, all from the same direction and at the same scale, each with a
+/// caption: level, triangles, pieces, r. Every piece has the colour that level_ply() gives it; the
+/// original surface is plain, for its pieces are too small to be told apart.
 /// @param levels  at least one; each < image.levels.size()
 /// @param from    direction from the object to the viewer, in body axes; finite, not zero
 picture::Raster level_picture(const ImageView& image, const std::vector<std::uint32_t>& levels,

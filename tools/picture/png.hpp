@@ -9,8 +9,8 @@
 
 namespace palpate::picture {
 
-/// The bytes of a PNG file, eight bits a channel, sRGB. Throws std::runtime_error where libpng
-/// fails.
+/// The bytes of a PNG file in at most kMaxPalette colours (indexed.hpp), sRGB. Throws
+/// std::runtime_error where libpng fails.
 [[nodiscard]] std::vector<std::byte> to_png(const Raster& raster);
 
 }  // namespace palpate::picture

@@ -9,9 +9,9 @@
 namespace palpate::picture {
 namespace {
 
-constexpr double kEdge_px = 0.75;    // of each of the two faces
-constexpr double kEdgeShade = 0.55;  // of the face
-constexpr double kAmbient = 0.3;     // of a face seen from the side
+constexpr double kEdge_px = 0.75;   // of each of the two faces
+constexpr double kEdgeShade = 0.5;  // of the face, where it is fully outlined
+constexpr double kAmbient = 0.3;    // of a face seen from the side
 
 Vec3d widened(Vec3f p) { return {double{p.x}, double{p.y}, double{p.z}}; }
 
@@ -83,8 +83,10 @@ void draw(Raster& raster, const View& view, const Bounds& bounds, const Surface&
         kAmbient + (1 - kAmbient) * std::min(std::abs(dot(normal, view.toward)), 1.0);
     const std::array<Corner, 3> triangle = {corners[a], corners[b], corners[c]};
     const Rgb face = dimmed(surface.colours[f], light);
-    const double edge_px = height_px(triangle) >= kMinOutlined_px ? kEdge_px : 0;
-    fill_triangle(raster, triangle, {face, dimmed(face, kEdgeShade), edge_px});
+    const double outlined = std::clamp(
+        (height_px(triangle) - kMinOutlined_px) / (kFullyOutlined_px - kMinOutlined_px), 0.0, 1.0);
+    const Rgb edge = dimmed(face, 1 - (1 - kEdgeShade) * outlined);
+    fill_triangle(raster, triangle, {face, edge, kEdge_px});
   }
 }
 

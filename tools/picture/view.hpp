@@ -37,10 +37,10 @@ struct Bounds {
 [[nodiscard]] Bounds united(const Bounds& a, const Bounds& b);
 
 /// Draws the surface as large as `bounds` in the middle of the raster allows: faces flat, the
-/// darker the more they turn away, the edges of faces that are kMinOutlined_px high or more
-/// outlined. O(points + faces + pixels covered).
+/// darker the more they turn away, outlined where they are more than kMinOutlined_px high, the
+/// stronger the higher. O(points + faces + pixels covered).
 void draw(Raster& raster, const View& view, const Bounds& bounds, const Surface& surface);
 
-inline constexpr double kMinOutlined_px = 9;
+inline constexpr double kMinOutlined_px = 9, kFullyOutlined_px = 27;
 
 }  // namespace palpate::picture
