@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "hal/protocol/host_driver.hpp"
 #include "hal/usb/interfaces.hpp"
 #include "hal/usb/libusb_transport.hpp"
 
@@ -61,18 +62,28 @@ Claimed claim(const Candidate& candidate) {
   return out;
 }
 
-FoundDevice describe(Kind kind, const Candidate& candidate) {
+/// What a device says about itself must make sense too.
+std::optional<DeviceProblem> ask(Kind kind, const Context& context, Claimed claimed,
+                                 const Interface& interface) {
+  LibusbTransport transport(context, std::move(claimed.handle), interface);
+  if (kind != Kind::open_protocol) return std::nullopt;
+  protocol::Capabilities capabilities;
+  return protocol::read_descriptor(transport, protocol::PacketType::capabilities, 0, capabilities);
+}
+
+FoundDevice describe(Kind kind, const Context& context, const Candidate& candidate) {
   Claimed claimed = claim(candidate);
   FoundDevice found;
   found.kind = kind;
   found.serial = claimed.serial;
   found.path = port_path(candidate.device);
-  found.ready = !claimed.problem;
-  if (claimed.problem) {
-    found.problem = claimed.problem->cause;
-    found.mend = claimed.problem->mend;
-  } else {
-    libusb_release_interface(claimed.handle.get(), candidate.interface.number);
+  const auto problem = claimed.problem
+                           ? claimed.problem
+                           : ask(kind, context, std::move(claimed), candidate.interface);
+  found.ready = !problem;
+  if (problem) {
+    found.problem = problem->cause;
+    found.mend = problem->mend;
   }
   return found;
 }
@@ -97,7 +108,7 @@ std::vector<FoundDevice> find_devices() {
   if (!context) return found;
   for (libusb_device* device : DeviceList(context.get())) {
     for (const Kind kind : {Kind::open_protocol, Kind::falcon}) {
-      if (const auto c = candidate_of(kind, device)) found.push_back(describe(kind, *c));
+      if (const auto c = candidate_of(kind, device)) found.push_back(describe(kind, context, *c));
     }
   }
   return found;
@@ -110,19 +121,24 @@ std::variant<std::unique_ptr<Transport>, DeviceProblem> open_transport(Kind kind
   const DeviceList list(context.get());
   std::optional<Claimed> chosen;
   Interface interface;
+  std::optional<DeviceProblem> unopened;
   for (libusb_device* device : list) {
     const auto candidate = candidate_of(kind, device);
     if (!candidate) continue;
     Claimed claimed = claim(*candidate);
-    // One that cannot be opened cannot say its serial number: it may be the one that is meant.
-    if (!serial.empty() && claimed.handle && claimed.serial != serial) continue;
-    if (chosen && !chosen->problem) {
+    if (!serial.empty() && claimed.serial != serial) {
+      // One that cannot be opened cannot say its serial number: it may be the one that is meant.
+      if (!claimed.handle) unopened = claimed.problem;
+      continue;
+    }
+    if (chosen) {
       return DeviceProblem{"find", "more than one such device is connected",
                            "name one by its serial number; 'palpate devices' lists them"};
     }
     chosen = std::move(claimed);
     interface = candidate->interface;
   }
+  if (!chosen && unopened) return *unopened;
   if (!chosen) {
     return DeviceProblem{"find", "no such device is connected",
                          "plug it in and switch it on; 'palpate devices' lists what is there"};

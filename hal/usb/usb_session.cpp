@@ -8,7 +8,8 @@ namespace palpate::hal::usb {
 
 Context make_context() noexcept {
   libusb_context* context = nullptr;
-  return libusb_init(&context) == 0 ? Context(context) : nullptr;
+  if (libusb_init(&context) != 0) return nullptr;
+  return Context(context, [](libusb_context* c) { libusb_exit(c); });
 }
 
 Config active_config(libusb_device* device) noexcept {

@@ -9,10 +9,8 @@
 
 namespace palpate::hal::usb {
 
-struct ContextDeleter {
-  void operator()(libusb_context* context) const noexcept { libusb_exit(context); }
-};
-using Context = std::unique_ptr<libusb_context, ContextDeleter>;
+/// Shared by what is open; ends with the last of them.
+using Context = std::shared_ptr<libusb_context>;
 
 struct HandleDeleter {
   void operator()(libusb_device_handle* handle) const noexcept { libusb_close(handle); }

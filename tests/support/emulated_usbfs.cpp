@@ -3,6 +3,8 @@
 
 #include <fcntl.h>
 #include <linux/usbdevice_fs.h>
+#include <pthread.h>
+#include <sched.h>
 #include <sys/ioctl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -24,6 +26,7 @@ std::atomic<EmulatedUsbfs*> g_usbfs{nullptr};
 
 constexpr std::uint64_t kLookEvery_ns = 100'000;
 constexpr std::size_t kSetupBytes = 8;
+constexpr int kHardwarePriority = 90;
 constexpr int kHighSpeed = 3;
 constexpr std::size_t kDeviceDescriptorBytes = 18;
 
@@ -92,6 +95,10 @@ EmulatedUsbfs::~EmulatedUsbfs() {
 }
 
 void EmulatedUsbfs::live() {
+  // Hardware does not wait for a processor; refused without the right to it.
+  sched_param parameter{};
+  parameter.sched_priority = kHardwarePriority;
+  pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
   while (!stopping_) {
     std::uint64_t next_ns = 0;
     {

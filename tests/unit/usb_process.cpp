@@ -150,16 +150,16 @@ image = "cube.palp"
 role = "fixed"
 )";
 
-// How late a tick is depends on the machine, so 0 and 5 are both right.
+// How late a tick is depends on the machine, so 0 and 5 are both right; at 50 Hz it may stand still
+// for 40 ms before the device gives the loop up.
 TEST_F(UsbProcess, run_feels_the_contact_through_the_device) {
   const auto cube =
       test::seal(test::parts_of({test::box_part({0, 0, 0}, {0.5f, 0.5f, 0.5f})}, 0.01));
   folder_.write("cube.palp", {reinterpret_cast<const char*>(cube.data()), cube.size()});
   folder_.write("scene.toml", kScene);
-  const test::Outcome outcome =
-      palpate({"run", path("scene.toml"), "--device", "usb", "--seconds", "3", "--rate", "250",
-               "--priority", "0", "--json", "--quiet"});
-  ASSERT_TRUE(outcome.status == 0 || outcome.status == 5) << outcome.status << outcome.err;
+  const test::Outcome outcome = palpate({"run", path("scene.toml"), "--device", "usb", "--seconds",
+                                         "4", "--rate", "50", "--json", "--quiet"});
+  ASSERT_TRUE(outcome.status == 0 || outcome.status == 5) << outcome.out << outcome.err;
   const json j = json::parse(outcome.out);
   EXPECT_EQ(j["state"], "rendering") << j["faults"];
   EXPECT_GT(j["touching"].get<int>(), 0);

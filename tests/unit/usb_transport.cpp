@@ -102,7 +102,7 @@ struct UsbRig {
   std::uint64_t readings = 0;
 };
 
-/// A device that forgives a host on a shared machine.
+/// The longest life that the protocol knows: what a shared machine may stand still for.
 OpenDeviceOptions patient() {
   OpenDeviceOptions options;
   options.capabilities.max_life_us = protocol::kMaxCommandLife_us;
