@@ -25,9 +25,9 @@ std::string ply_head(const LevelMesh& mesh) {
 }
 
 std::array<double, 3> body_m(const image::Header& header, Vec3f point) {
-  return {header.centre_m[0] + header.radius_m * double{point.x},
-          header.centre_m[1] + header.radius_m * double{point.y},
-          header.centre_m[2] + header.radius_m * double{point.z}};
+  const Vec3d p = vec_cast<double>(point);
+  return {header.centre_m[0] + header.radius_m * p.x, header.centre_m[1] + header.radius_m * p.y,
+          header.centre_m[2] + header.radius_m * p.z};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // Colours of pictures and of exported meshes.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 namespace palpate::picture {
@@ -27,9 +28,9 @@ constexpr Rgb colour_of(std::uint32_t index) {
 }
 
 /// Each channel times `factor`, in [0, 1].
-constexpr Rgb dimmed(Rgb colour, double factor) {
+inline Rgb dimmed(Rgb colour, double factor) {
   const auto channel = [factor](std::uint8_t c) {
-    return static_cast<std::uint8_t>(factor * c + 0.5);
+    return static_cast<std::uint8_t>(std::lround(factor * c));
   };
   return {channel(colour.r), channel(colour.g), channel(colour.b)};
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -59,7 +60,9 @@ struct Set {
   }
 
   [[nodiscard]] Rgb colour() const {
-    const auto rounded = [this](std::size_t c) { return static_cast<std::uint8_t>(mean[c] + 0.5); };
+    const auto rounded = [this](std::size_t c) {
+      return static_cast<std::uint8_t>(std::lround(mean[c]));
+    };
     return {rounded(0), rounded(1), rounded(2)};
   }
 

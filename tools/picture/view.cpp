@@ -13,10 +13,8 @@ constexpr double kEdge_px = 0.75;   // of each of the two faces
 constexpr double kEdgeShade = 0.5;  // of the face, where it is fully outlined
 constexpr double kAmbient = 0.3;    // of a face seen from the side
 
-Vec3d widened(Vec3f p) { return {double{p.x}, double{p.y}, double{p.z}}; }
-
 Vec3d unit(Vec3d v) {
-  const double length = std::sqrt(squared_norm(v));
+  const double length = norm(v);
   return length > 0 ? (1 / length) * v : Vec3d{};
 }
 
@@ -49,7 +47,8 @@ Bounds bounds_of(const View& view, std::span<const Vec3f> points) {
   assert(!points.empty());
   Bounds bounds;
   for (const Vec3f& point : points) {
-    const double x = dot(widened(point), view.right), y = dot(widened(point), view.up);
+    const double x = dot(vec_cast<double>(point), view.right),
+                 y = dot(vec_cast<double>(point), view.up);
     const Bounds one = {x, x, y, y};
     bounds = &point == points.data() ? one : united(bounds, one);
   }
@@ -68,7 +67,7 @@ void draw(Raster& raster, const View& view, const Bounds& bounds, const Surface&
   std::vector<Corner> corners;
   corners.reserve(surface.points.size());
   for (const Vec3f& point : surface.points) {
-    const Vec3d p = widened(point);
+    const Vec3d p = vec_cast<double>(point);
     corners.push_back(
         {raster.width / 2.0 + scale * (dot(p, view.right) - (bounds.left + bounds.right) / 2),
          raster.height / 2.0 - scale * (dot(p, view.up) - (bounds.bottom + bounds.top) / 2),
@@ -76,9 +75,9 @@ void draw(Raster& raster, const View& view, const Bounds& bounds, const Surface&
   }
   for (std::size_t f = 0; f < surface.faces.size(); ++f) {
     const auto& [a, b, c] = surface.faces[f];
-    const Vec3d origin = widened(surface.points[a]);
-    const Vec3d normal =
-        unit(cross(widened(surface.points[b]) - origin, widened(surface.points[c]) - origin));
+    const Vec3d origin = vec_cast<double>(surface.points[a]);
+    const Vec3d normal = unit(cross(vec_cast<double>(surface.points[b]) - origin,
+                                    vec_cast<double>(surface.points[c]) - origin));
     const double light =
         kAmbient + (1 - kAmbient) * std::min(std::abs(dot(normal, view.toward)), 1.0);
     const std::array<Corner, 3> triangle = {corners[a], corners[b], corners[c]};
