@@ -59,10 +59,10 @@ constexpr Key<Scene> kEngineKeys[] = {
 constexpr Key<Scene> kForceKeys[] = {
     {"stiffness_N_per_m", "N/m",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.stiffness_N_per_m; }, 0, kMost},
-     "of the penalty force of one cluster of contacts"},
+     "of the penalty force in any one direction, however many contacts push that way"},
     {"cluster_radius_m", "m",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.cluster_radius_m; }, 0, kMost},
-     "contacts nearer than this to the deepest one of a cluster belong to it"},
+     "contacts nearer together than this count as one where the force is shared out"},
     {"max_force_N", "N",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.max_force_N; }, 0, kMost},
      "the force on the tool is scaled down to this length"},
@@ -80,7 +80,7 @@ constexpr Key<Scene> kLimitKeys[] = {
      "room for contacts of one tick, over all pairs"},
     {"clusters", "",
      Count<Scene>{[](Scene& s) -> std::uint32_t& { return s.limits.clusters; }, 1, 1u << 16},
-     "room for clusters of contacts of one tick, over all pairs"},
+     "room for grid points of `cluster_radius_m` near contacts of one tick, over all pairs"},
     {"max_memory_MB", "MB",
      Real<Scene>{[](Scene& s) -> double& { return s.max_memory_MB; }, 0.001, 1e6},
      "images and engine together may take this much memory (1 MB = 10^6 bytes); a scene that needs "

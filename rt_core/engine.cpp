@@ -4,7 +4,7 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/meter.hpp"
-#include "rt_core/force/cluster.hpp"
+#include "rt_core/force/penalty.hpp"
 #include "rt_core/levels/levels_engine.hpp"
 #include "rt_core/palpate_rt.hpp"
 #include "rt_core/regions/regions_engine.hpp"
@@ -22,8 +22,7 @@ class Engine {
   levels::QueryMemory levels;           // of the engine's kind; the other is empty
   regions::QueryMemory regions;
   std::span<Contact> contacts;
-  std::span<force::Ranked> ranking;
-  std::span<force::Cluster> clusters;
+  force::Workspace force;
   std::uint64_t tail_ns = 0;  // what ticks take from the end of refinement to their own, smoothed
 };
 
@@ -105,8 +104,9 @@ Engine* lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKi
   const auto states = arena.array<levels::PairState>(scene.pairs.size());
   const auto poses = arena.array<Pose>(scene.bodies.size());
   const auto contacts = arena.array<Contact>(limits.contacts);
+  const auto felt = arena.array<force::Felt>(limits.contacts);
   const auto ranking = arena.array<force::Ranked>(limits.contacts);
-  const auto clusters = arena.array<force::Cluster>(limits.clusters);
+  const auto places = arena.array<force::Place>(limits.clusters);
   levels::QueryMemory levels;
   regions::QueryMemory regions;
   if (kind == EngineKind::levels) {
@@ -119,8 +119,7 @@ Engine* lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKi
   e.poses = poses;
   e.states = states;
   e.contacts = contacts;
-  e.ranking = ranking;
-  e.clusters = clusters;
+  e.force = {felt, ranking, force::Places(places)};
   e.levels = levels;
   e.regions = regions;
   e.levels.pairs = e.regions.pairs = states;
@@ -329,18 +328,17 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
 
   const std::span<Contact> contacts = engine.contacts.first(found.contacts);
   out.contacts = contacts;
-  bool clusters_used_up = false;
-  out.clusters = force::cluster(contacts, settings.cluster_radius_m, engine.ranking,
-                                engine.clusters, clusters_used_up);
-  out.wrench = force::penalty_wrench(contacts, engine.clusters.first(out.clusters), engine.pairs,
-                                     engine.tool, engine.poses[engine.tool].position_m, settings);
+  const force::Penalty penalty = force::penalty(contacts, engine.pairs, engine.tool,
+                                                engine.poses[engine.tool], settings, engine.force);
+  out.wrench = force::limited(penalty.wrench, settings);
+  out.clusters = static_cast<std::uint32_t>(penalty.directions + 0.5);
   out.min_distance_m =
       found.contacts > 0 ? found.min_distance_m : std::numeric_limits<double>::quiet_NaN();
   out.front_nodes = found.front_nodes;
   out.queries = found.queries;
   out.certificate = found.certificate;
   out.certificate.units_used = meter.used();
-  out.certificate.truncated_by_memory |= clusters_used_up;
+  out.certificate.truncated_by_memory |= penalty.places_full;
   engine.tail_ns = smoothed(engine.tail_ns, meter.tail_ns());
   return Status::ok;
 }

@@ -70,9 +70,10 @@ struct Settings {
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
   /// Regions engine: refinement may end once the certified error of the force is no more; 0: exact.
   double force_tolerance_N = 0;
-  double stiffness_N_per_m = 600.0;  ///< of the penalty force of one cluster; >= 0
-  double cluster_radius_m =
-      0.003;  ///< contacts nearer than this to a cluster's representative join it; >= 0
+  double stiffness_N_per_m = 600.0;  ///< of the penalty force in any one direction; >= 0
+  /// Contacts nearer together than this count as one where the force is shared out (Places); it
+  /// acts on the torque alone. >= 0; 0: every contact counts.
+  double cluster_radius_m = 0.003;
   double max_force_N = std::numeric_limits<double>::infinity();    ///< the wrench's force is scaled
                                                                    ///< down to this length
   double max_torque_Nm = std::numeric_limits<double>::infinity();  ///< the wrench's torque is
@@ -83,7 +84,7 @@ struct Settings {
 struct Limits {
   std::uint32_t nodes = 1u << 17;     ///< nodes of the bounding volume test tree over all pairs
   std::uint32_t contacts = 1u << 14;  ///< contacts of one tick over all pairs
-  std::uint32_t clusters = 256;       ///< clusters of one tick over all pairs
+  std::uint32_t clusters = 1u << 12;  ///< grid points of cluster_radius_m near contacts of one tick
 };
 
 /// What one tick may spend. Refinement ends at whichever limit is met first; the answer is valid
@@ -102,7 +103,8 @@ struct Contact {
   Vec3d point_b_m{};      ///< on the surface of body b
   Vec3d normal{};         ///< unit, from b to a
   double distance_m = 0;  ///< signed: negative where the pieces overlap
-  double weight = 0;      ///< share of the force of its cluster (the representative's is 1)
+  /// Its force on the tool is weight * stiffness * (delta - distance) along the normal.
+  double weight = 0;
   std::uint32_t pair = 0;
   std::uint32_t piece_a = 0, level_a = 0;
   std::uint32_t piece_b = 0, level_b = 0;
@@ -131,7 +133,7 @@ struct Certificate {
 struct TickResult {
   Wrench wrench;  ///< on the tool, world axes, torque about the origin of the tool's body frame
   std::span<const Contact> contacts;  ///< valid until the next tick; order is deterministic
-  std::uint32_t clusters = 0;
+  std::uint32_t clusters = 0;  ///< directions that are felt: how often the stiffness is, rounded
   double min_distance_m =
       std::numeric_limits<double>::quiet_NaN();  ///< least over contacts; NaN where there are none
   std::uint64_t front_nodes =
@@ -166,7 +168,7 @@ Status configure(Engine& engine, const Settings& settings) noexcept;
 /// normalised)
 /// @param out    written only where the result is Status::ok
 /// Errors: bad_pose, bad_argument. Cost: the budget, plus at most one convex query and a tail that
-/// is linear in the front, the contacts and contacts * clusters. No allocation, no lock, no
+/// is linear in the front and in contacts * log(contacts). No allocation, no lock, no
 /// recursion, bounded stack.
 Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
             TickResult& out) noexcept;

@@ -54,9 +54,11 @@ std::optional<DeviceProblem> StreamedDevice::start() {
   streaming_ = true;
   forget_last_run();
   if (options_.threaded) thread_ = std::thread([this] { run(); });
-  auto problem = wait_for_first_reading();
-  if (problem) stop();
-  return problem;
+  if (wait_for_first_reading()) return std::nullopt;
+  const bool lost = (faults() & kDeviceLost) != 0;
+  stop();  // only then the driver is ours again
+  if (lost) return DeviceProblem{"first reading", "the device is gone", "plug it in again"};
+  return driver_->why_no_reading();
 }
 
 /// While neither thread runs, both ends of the mailboxes are ours.
@@ -72,23 +74,20 @@ void StreamedDevice::forget_last_run() noexcept {
   stopping_ = false;
 }
 
-std::optional<DeviceProblem> StreamedDevice::wait_for_first_reading() {
+bool StreamedDevice::wait_for_first_reading() noexcept {
   const auto patience_ns =
       static_cast<std::uint64_t>(std::llround(1e9 * driver_->first_reading_within_s()));
   const std::uint64_t give_up_ns = clock_.now_ns() + patience_ns;
   while (readings_.load(std::memory_order_relaxed) == 0) {
-    if ((faults() & kDeviceLost) != 0) {
-      return DeviceProblem{"first reading", "the device is gone", "plug it in again"};
-    }
     const std::uint64_t now_ns = clock_.now_ns();
-    if (now_ns >= give_up_ns) return driver_->why_no_reading();
+    if ((faults() & kDeviceLost) != 0 || now_ns >= give_up_ns) return false;
     if (options_.threaded) {
       clock_.sleep_until(now_ns + kLookEvery_ns);
     } else {
       step();
     }
   }
-  return std::nullopt;
+  return true;
 }
 
 void StreamedDevice::stop() noexcept {

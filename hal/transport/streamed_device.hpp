@@ -62,7 +62,7 @@ class StreamedDevice final : public Device, private StreamSink {
 
  private:
   void received(std::span<const std::byte> bytes, std::uint64_t now_ns) noexcept override;
-  [[nodiscard]] std::optional<DeviceProblem> wait_for_first_reading();
+  [[nodiscard]] bool wait_for_first_reading() noexcept;
   void forget_last_run() noexcept;
   void run() noexcept;
   void take_command(std::uint64_t now_ns) noexcept;

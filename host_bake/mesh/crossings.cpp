@@ -65,6 +65,7 @@ bool fold_over_edge(const Couple& c) {
 }  // namespace
 
 bool triangles_cross(const std::array<Point, 3>& a, const std::array<Point, 3>& b) {
+  if (collinear(a[0], a[1], a[2]) || collinear(b[0], b[1], b[2])) return false;
   const Couple c = align(a, b);
   switch (c.shared) {
     case 0:

@@ -27,8 +27,7 @@ inline constexpr std::size_t kMaxMeetingsPerFace = 100;
 std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>> crossing_pairs(
     const Mesh& mesh);
 
-/// The same for one pair: do they have more in common than the corners that are equal? Both have
-/// area. Exact.
+/// The same for one pair: do they have more in common than the corners that are equal? Exact.
 bool triangles_cross(const std::array<Point, 3>& a, const std::array<Point, 3>& b);
 
 /// Are the three points on one line, exactly?

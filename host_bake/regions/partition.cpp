@@ -157,8 +157,8 @@ class Divider {
 }  // namespace
 
 RegionOptions region_options(double delta_rel) {
-  constexpr double kDeltas = 4;
-  constexpr double kLeast = 0.06;
+  constexpr double kDeltas = 6;
+  constexpr double kLeast = 0.03;
   constexpr double kMost = 0.25;
   RegionOptions options;
   options.radius = std::clamp(kDeltas * delta_rel, kLeast, kMost);

@@ -215,15 +215,16 @@ bool Constraints::stays(std::uint32_t face) const {
                       [this](std::uint32_t v) { return v == ring_->kept || v == ring_->removed; });
 }
 
-/// As BoxTree::search(), for faces that stay as they are and are not of the patch.
+/// As BoxTree::search(), for faces that stay as they are.
 template <class Visit>
-bool Constraints::search_unchanged(std::uint32_t patch, const FaceBox& box, Visit visit) {
+bool Constraints::search_unchanged(const FaceBox& box, Visit visit) {
   return near_faces_.search(
-      box, [&](std::uint32_t f) { return patches_.of(f) != patch && stays(f) && visit(f); });
+      box, [this](std::uint32_t f) { return stays(f); }, visit);
 }
 
 bool Constraints::entered_by_unchanged(std::uint32_t patch, ShrunkHull& hull, const FaceBox& box) {
-  return search_unchanged(patch, box, [&](std::uint32_t f) { return enters(hull, corners(f)); });
+  return search_unchanged(
+      box, [&](std::uint32_t f) { return patches_.of(f) != patch && enters(hull, corners(f)); });
 }
 
 /// The patch stays convex all over, so the hull grows by no more than that of the new vertex and
@@ -286,8 +287,9 @@ Entry Constraints::large_hull_is_entered(const Affected& affected) {
   }
   Entry entry = Entry::no;
   if (part != nullptr)
-    search_unchanged(patch, part->grown, [&](std::uint32_t f) {
-      if (enters(part->hull, corners(f))) entry = admit(shape, f, corners(f));
+    search_unchanged(part->grown, [&](std::uint32_t f) {
+      if (patches_.of(f) != patch && enters(part->hull, corners(f)))
+        entry = admit(shape, f, corners(f));
       return entry != Entry::no;
     });
   return entry;
@@ -347,9 +349,7 @@ bool Constraints::crosses() {
     for (std::size_t j = 0; j < i; ++j)
       if (star_[i].patch != star_[j].patch && cross_each_other(star_[i].corners, star_[j].corners))
         return true;
-  return near_faces_.search(star_box_, [&](std::uint32_t f) {
-    for (const std::uint32_t v : surface_.faces[f])
-      if (v == ring_->kept || v == ring_->removed) return false;
+  return search_unchanged(star_box_, [&](std::uint32_t f) {
     const FaceBox& box = faces_.box(f);
     return std::any_of(star_.begin(), star_.end(), [&](const StarFace& face) {
       return face.patch != patches_.of(f) && face.box.meets(box) &&

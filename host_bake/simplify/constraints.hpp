@@ -82,7 +82,7 @@ class Constraints {
   [[nodiscard]] bool hull_is_entered(Affected& affected);
   [[nodiscard]] bool stays(std::uint32_t face) const;
   template <class Visit>
-  bool search_unchanged(std::uint32_t patch, const FaceBox& box, Visit visit);
+  bool search_unchanged(const FaceBox& box, Visit visit);
   [[nodiscard]] bool entered_by_unchanged(std::uint32_t patch, ShrunkHull& hull,
                                           const FaceBox& box);
   [[nodiscard]] Entry admit(const PatchShape& shape, std::uint32_t face, const Corners& at);

@@ -10,8 +10,9 @@
 
 namespace palpate::bake {
 
-/// Answers as the tree does, as long as that stays as it is. The first search looks up what is near
-/// the place; what those after it need is then in one short list.
+/// Answers as the tree does, but for boxes that do not count, as long as the tree stays as it is.
+/// The first search looks up what is near the place and counts; what those after it need is then in
+/// one short list.
 class NearBoxes {
  public:
   explicit NearBoxes(const BoxTree& tree) : tree_(tree) {}
@@ -28,11 +29,12 @@ class NearBoxes {
     }
   }
 
-  /// As BoxTree::search().
-  template <class Visit>
-  bool search(const FaceBox& query, Visit visit) {
-    if (!holds(query)) return tree_.search(query, visit);
-    if (!found_) find();
+  /// As BoxTree::search(), for those for which counts(id) -> bool: always the same at one place.
+  template <class Counts, class Visit>
+  bool search(const FaceBox& query, Counts counts, Visit visit) {
+    if (!holds(query))
+      return tree_.search(query, [&](std::uint32_t id) { return counts(id) && visit(id); });
+    if (!found_) find(counts);
     for (const Near& near : near_)
       if (near.box.meets(query) && visit(near.id)) return true;
     return false;
@@ -48,10 +50,11 @@ class NearBoxes {
       if (query.low[i] < region_.low[i] || query.high[i] > region_.high[i]) return false;
     return true;
   }
-  void find() {
+  template <class Counts>
+  void find(Counts counts) {
     near_.clear();
     tree_.search(region_, [&](std::uint32_t id) {
-      near_.push_back({tree_.box(id), id});
+      if (counts(id)) near_.push_back({tree_.box(id), id});
       return false;
     });
     found_ = true;

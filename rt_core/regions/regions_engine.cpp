@@ -12,8 +12,10 @@ using image::RegionTriangle;
 using levels::PairState;
 
 /// Distances up to delta and this many ticks of the present motion are told apart, so that a region
-/// that is found farther rests for as long.
+/// that is found farther rests for as long; not where that is more than a share of delta, for a
+/// farther limit costs more than the rest saves.
 constexpr double kRestTicks = 4;
+constexpr double kMostRest = 0.5;
 /// A move by more than this (in units), or by this many delta where that is more, starts anew.
 constexpr double kJump = 0.05;
 constexpr double kJumpDelta = 2;
@@ -101,7 +103,8 @@ class Query {
   /// Distances up to here are told apart.
   static float limit_of(const PairState& pair) noexcept {
     const double rest = kRestTicks * (pair.last_travel + pair.last_turn * pair.scale_a);
-    return static_cast<float>(pair.delta + (rest < pair.delta ? rest : pair.delta)) + kClosed;
+    return static_cast<float>(rest <= kMostRest * pair.delta ? pair.delta + rest : pair.delta) +
+           kClosed;
   }
 
   /// The regions of a pair that may be nearer than delta.

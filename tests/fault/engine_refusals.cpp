@@ -129,7 +129,7 @@ TEST(EngineTick, many_bodies_and_pairs_sum_on_the_tool) {
   const TickResult r = tick_or_fail(*scene.engine, poses);
   EXPECT_NEAR(r.wrench.force_N.x, 600 * (0.08 - 0.05), 1e-2);
   EXPECT_NEAR(r.wrench.force_N.y, -600 * 0.06, 1e-2);
-  EXPECT_EQ(r.clusters, 4u);
+  EXPECT_EQ(r.clusters, 3u);
 }
 
 TEST(EngineTick, far_bodies_cost_nothing) {

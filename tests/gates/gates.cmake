@@ -8,7 +8,8 @@ if(NOT PALPATE_SANITIZE AND NOT PALPATE_COVERAGE)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     add_test(NAME rt_core.stack
       COMMAND "${CMAKE_CURRENT_SOURCE_DIR}/gates/stack.py" "${PROJECT_BINARY_DIR}" ${PALPATE_STACK_LIMIT}
-        palpate::tick palpate::create palpate::validate)
+        palpate::tick palpate::create palpate::validate
+        test_boxes triangle_distances witnesses)
   endif()
 endif()
 

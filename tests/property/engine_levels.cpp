@@ -170,14 +170,14 @@ TEST(EngineLevels, contacts_do_not_depend_on_history) {
   }
 }
 
-// Closer and closer in steps so small, and in one cluster, that without interpolation only a change
-// of level can make the force jump.
+// Closer and closer in steps so small, and at one place, that without interpolation only a change
+// of level can make the force jump. It ends well apart: where edges nearly touch normals turn fast.
 double largest_jump(double s0, bool interpolate) {
   Settings settings = with_s0(s0, interpolate);
   settings.cluster_radius_m = 10;
   BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, settings);
   double last = 0, largest = 0;
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < 850; ++i) {
     const Pose poses[2] = {{{1.95 - 1e-4 * i, 0.1, 0.05}, turn({0.3, 0.2, 2e-4 * i})}, {}};
     const double force = norm(tick_or_fail(*scene.engine, poses).wrench.force_N);
     if (i > 0) largest = std::max(largest, std::abs(force - last));

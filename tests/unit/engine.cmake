@@ -1,3 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 palpate_test(test_tree SOURCES unit/test_tree.cpp LIBS palpate_rt)
-palpate_test(force_cluster SOURCES unit/cluster.cpp LIBS palpate_rt)
+palpate_test(force_penalty SOURCES unit/force_penalty.cpp LIBS palpate_rt)
+
+# The page's loop, compiled as C.
+add_library(c_interface_loop STATIC unit/c_interface_loop.c)
+set_target_properties(c_interface_loop PROPERTIES C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)
+target_compile_options(c_interface_loop PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Werror -Wno-missing-prototypes)
+target_link_libraries(c_interface_loop PRIVATE palpate_rt)
+palpate_test(c_interface SOURCES unit/c_interface.cpp LIBS palpate_rt c_interface_loop)
+target_compile_definitions(c_interface PRIVATE PALPATE_DOCS="${PROJECT_SOURCE_DIR}/docs" PALPATE_TESTS="${PROJECT_SOURCE_DIR}/tests")

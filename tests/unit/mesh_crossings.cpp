@@ -79,6 +79,17 @@ TEST(Crossings, Neighbours_do_not_cross) {
   EXPECT_EQ(crossings(sheet(4)), 0U);
 }
 
+TEST(Crossings, Faces_without_area_cross_nothing) {
+  const std::array<Point, 3> face = {{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}};
+  for (const std::array<Point, 3>& flat :
+       std::vector<std::array<Point, 3>>{{{{0.5, 0.5, -1}, {0.5, 0.5, 1}, {0.5, 0.5, 1}}},
+                                         {{{0, 0, 0}, {0.5, 0.5, 1}, {0.5, 0.5, 1}}},
+                                         {{{0.5, 0.5, -1}, {0.5, 0.5, 0}, {0.5, 0.5, 1}}}}) {
+    EXPECT_FALSE(triangles_cross(face, flat));
+    EXPECT_FALSE(triangles_cross(flat, face));
+  }
+}
+
 TEST(Crossings, Fold_over_a_common_edge_is_found) {
   const Mesh folded = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 0, 3}}};
   const Mesh flat = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, -1, 0}}, {{0, 1, 2}, {1, 0, 3}}};

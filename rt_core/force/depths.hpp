@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The largest depth felt in nearly a direction, over all contacts.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "rt_core/geometry/vec3.hpp"
+
+namespace palpate::force {
+
+/// A contact as the force stage sees it.
+struct Felt {
+  Vec3d point_m{};     ///< between its points, from the tool's origin, world axes
+  Vec3d direction{};   ///< unit: where it pushes the tool
+  double depth_m = 0;  ///< below delta; > 0
+  double mass = 0;     ///< see penalty.hpp
+  std::uint32_t contact = 0;
+  std::uint32_t next = 0;  ///< of the same side, the next less deep one
+};
+
+/// A contact waiting to be put in order.
+struct Ranked {
+  double depth_m = 0;
+  std::uint32_t felt = 0;
+};
+
+/// Contacts in the order of depth, apart for the six sides of a box that their directions are
+/// nearest to, so that the largest of depth times kinship is found after a few looks.
+class Depths {
+ public:
+  /// Looks at contacts of one side, at most: the deepest ones. More are needed only where very many
+  /// contacts push in directions that differ by more than 30 degrees within a side.
+  static constexpr int kMostLooks = 64;
+
+  /// @param felt     outlives this; `next` is set
+  /// @param ranking  scratch, [felt]
+  /// O(n log n)
+  Depths(std::span<Felt> felt, std::span<Ranked> ranking) noexcept;
+
+  /// Largest depth_m * kinship over the contacts within 90 degrees of f's direction, f itself
+  /// included. Continuous in all of them. O(1): at most 6 kMostLooks looks.
+  [[nodiscard]] double around(const Felt& f) const noexcept;
+
+ private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  static constexpr int kSides = 6;
+  [[nodiscard]] double around(const Felt& f, int side, double most_m) const noexcept;
+
+  std::span<const Felt> felt_;
+  std::array<std::uint32_t, kSides> deepest_;
+};
+
+}  // namespace palpate::force

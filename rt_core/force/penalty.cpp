@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/force/penalty.hpp"
+
+#include "rt_core/force/directions.hpp"
+
+namespace palpate::force {
+namespace {
+
+Vec3d limited(Vec3d v, double most) noexcept {
+  const double length = norm(v);
+  return length > most ? (most / length) * v : v;
+}
+
+/// The contacts that push the tool, in the order of contacts.
+std::span<Felt> gather(std::span<Contact> contacts, std::span<const BodyPair> pairs,
+                       std::uint32_t tool, Vec3d origin_m, double delta_m,
+                       std::span<Felt> out) noexcept {
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < contacts.size(); ++i) {
+    Contact& c = contacts[i];
+    c.weight = 0;
+    const BodyPair& pair = pairs[c.pair];
+    const double depth_m = delta_m - c.distance_m;
+    if ((pair.a != tool && pair.b != tool) || !(depth_m > 0)) continue;
+    Felt& felt = out[count++];
+    felt.point_m = 0.5 * (c.point_a_m + c.point_b_m) - origin_m;
+    felt.direction = pair.a == tool ? c.normal : -c.normal;
+    felt.depth_m = depth_m;
+    felt.contact = i;
+  }
+  return out.first(count);
+}
+
+/// In the tool's axes the grid of places turns with the scene.
+void weigh(std::span<Felt> felt, const Pose& tool_pose, const Settings& settings,
+           Places& places) noexcept {
+  const Mat3d to_tool = transpose(rotation(tool_pose.orientation));
+  // In units of delta: squares of lengths in metres may leave the range of double.
+  const double per_delta = 1 / settings.delta_m;
+  places.begin(settings.cluster_radius_m);
+  for (Felt& f : felt) {
+    const double depth = per_delta * f.depth_m;
+    f.mass = depth * depth;
+    places.add(to_tool * f.point_m, f.mass);
+  }
+  for (Felt& f : felt) f.mass = places.share(to_tool * f.point_m, f.mass);
+}
+
+}  // namespace
+
+Penalty penalty(std::span<Contact> contacts, std::span<const BodyPair> pairs, std::uint32_t tool,
+                const Pose& tool_pose, const Settings& settings, Workspace& workspace) noexcept {
+  const std::span<Felt> felt =
+      gather(contacts, pairs, tool, tool_pose.position_m, settings.delta_m, workspace.felt);
+  weigh(felt, tool_pose, settings, workspace.places);
+  Directions directions;
+  for (const Felt& f : felt) directions.add(f.direction, f.mass);
+  const Depths depths(felt, workspace.ranking);
+
+  Penalty out;
+  out.places_full = workspace.places.full();
+  for (const Felt& f : felt) {
+    if (!(f.mass > 0)) continue;
+    const double around = directions.around(f.direction);
+    // At least its own; rounding of masses far larger may say less.
+    const double share = around > f.mass ? f.mass / around : 1;
+    const double depth_m = share * depths.around(f);
+    const Vec3d force_N = (settings.stiffness_N_per_m * depth_m) * f.direction;
+    contacts[f.contact].weight = depth_m / f.depth_m;
+    out.directions += share;
+    out.wrench.force_N += force_N;
+    out.wrench.torque_Nm += cross(f.point_m, force_N);
+  }
+  return out;
+}
+
+Wrench limited(const Wrench& wrench, const Settings& settings) noexcept {
+  return {limited(wrench.force_N, settings.max_force_N),
+          limited(wrench.torque_Nm, settings.max_torque_Nm)};
+}
+
+}  // namespace palpate::force

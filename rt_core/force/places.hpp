@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contacts at one place count as one: masses that do not depend on how finely a surface is cut.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "rt_core/geometry/vec3.hpp"
+
+namespace palpate::force {
+
+/// One corner of a cubic grid, where contacts have come near it in this tick.
+struct Place {
+  std::int32_t x = 0, y = 0, z = 0;
+  std::uint32_t tick = 0;  ///< when it was last in use
+  double most = 0;         ///< largest mass brought by one contact
+  double sum = 0;          ///< of all masses brought
+};
+
+/// A grid that remembers only the corners that contacts come near: a hash table over borrowed
+/// memory, emptied in O(1).
+///
+/// A contact brings its mass to the eight corners of its cube, in trilinear shares. A corner counts
+/// as much as the largest mass brought, and hands that out in proportion. So a contact alone keeps
+/// its mass wherever it lies, coincident ones have that of one together, a wide contact gets a mass
+/// that grows with its area and not with its triangles, and everything is continuous in the points
+/// and masses and independent of their order but for rounding.
+class Places {
+ public:
+  Places() = default;
+  explicit Places(std::span<Place> table) noexcept : table_(table) {}
+
+  /// Begins a tick with another grid. @param width_m  of a cube; 0: every contact keeps its mass
+  void begin(double width_m) noexcept;
+
+  /// Brings a contact. @param point_m  in the axes of the grid, mass >= 0. O(1)
+  void add(Vec3d point_m, double mass) noexcept;
+
+  /// What is handed out for a contact that was brought, with the point and the mass it was brought
+  /// with: at most its mass. O(1)
+  [[nodiscard]] double share(Vec3d point_m, double mass) noexcept;
+
+  /// Whether corners found no room since begin(): contacts there keep their mass.
+  [[nodiscard]] bool full() const noexcept { return full_; }
+
+ private:
+  struct Corners;
+  [[nodiscard]] bool corners_of(Vec3d point_m, Corners& out) const noexcept;
+  [[nodiscard]] Place* find(std::int32_t x, std::int32_t y, std::int32_t z) noexcept;
+
+  std::span<Place> table_;
+  double per_m_ = 0;
+  std::uint32_t tick_ = 0;
+  bool full_ = false;
+};
+
+}  // namespace palpate::force

@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * The contact engine for C and for whatever calls C. The same engine, units, ranges, errors and
+ * costs as palpate_rt.hpp, which says more; docs/EMBEDDING.md shows a whole loop.
+ *
+ * SI units; quaternions w x y z, body to world; wrenches, contacts and poses in world axes. Nothing
+ * here allocates, locks or reads a clock of its own. The result of every function that can fail is
+ * a palpate_status: 0, or the number that palpate_describe() names. A null pointer where something
+ * is to be read or written is PALPATE_BAD_ARGUMENT.
+ */
+#ifndef PALPATE_H
+#define PALPATE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef uint16_t palpate_status;
+#define PALPATE_OK 0u
+#define PALPATE_BAD_ARGUMENT 100u
+
+/* Text of a status, static storage, never null. */
+const char* palpate_describe(palpate_status status);
+
+#define PALPATE_IMAGE_WORDS 23
+
+/* A validated image, used in place: its bytes must outlive it. */
+typedef struct palpate_image {
+  const void* opaque[PALPATE_IMAGE_WORDS];
+} palpate_image;
+
+/* Proves that the bytes are a sound image. bytes: the whole image, on a 64-byte boundary. */
+palpate_status palpate_open(const void* bytes, size_t size, palpate_image* out);
+
+typedef struct palpate_pair {
+  uint32_t a, b; /* bodies; normals point from b to a */
+} palpate_pair;
+
+/* Arrays must outlive the engine. */
+typedef struct palpate_scene {
+  const palpate_image* images; /* [bodies] */
+  uint32_t bodies;
+  const palpate_pair* pairs; /* [pair_count] */
+  uint32_t pair_count;
+  uint32_t tool; /* the body that the device holds */
+} palpate_scene;
+
+enum { PALPATE_LEVELS = 0, PALPATE_REGIONS = 1 };
+enum { PALPATE_BOUNDS_TIGHT = 0, PALPATE_BOUNDS_PAPER = 1 };
+enum { PALPATE_BY_DEVIATION = 0, PALPATE_NEAREST = 1, PALPATE_BY_RATIO = 2 };
+
+/* Start from palpate_default_settings(): fields are only ever added. */
+typedef struct palpate_settings {
+  uint32_t engine; /* fixed when the engine is made */
+  uint32_t exact;  /* 0 or 1 */
+  uint32_t interpolate;
+  uint32_t bounds;
+  uint32_t order;
+  uint32_t reserved;
+  double delta_m;
+  double s0;
+  double kappa; /* infinity: no such rule */
+  double force_tolerance_N;
+  double stiffness_N_per_m;
+  double cluster_radius_m;
+  double max_force_N;
+  double max_torque_Nm;
+} palpate_settings;
+
+typedef struct palpate_limits {
+  uint32_t nodes, contacts, clusters;
+} palpate_limits;
+
+void palpate_default_settings(palpate_settings* out);
+void palpate_default_limits(palpate_limits* out);
+
+typedef struct palpate_engine palpate_engine;
+
+/* Bytes that palpate_create() needs; 0 where the arguments are out of range. */
+size_t palpate_required_bytes(const palpate_scene* scene, const palpate_limits* limits,
+                              uint32_t engine);
+
+/* Makes an engine in `memory` (on a 64-byte boundary). It needs no destruction. */
+palpate_status palpate_create(const palpate_scene* scene, const palpate_settings* settings,
+                              const palpate_limits* limits, void* memory, size_t size,
+                              palpate_engine** out);
+
+palpate_status palpate_configure(palpate_engine* engine, const palpate_settings* settings);
+
+typedef struct palpate_pose {
+  double position_m[3];
+  double orientation[4];
+} palpate_pose;
+
+/* Refinement ends at whichever comes first. units: UINT64_MAX for no limit; clock_ns: a monotonic
+ * clock, or null for none. */
+typedef struct palpate_budget {
+  uint64_t units;
+  uint64_t (*clock_ns)(void* context);
+  void* clock_context;
+  uint64_t deadline_ns;
+} palpate_budget;
+
+typedef struct palpate_contact {
+  double point_a_m[3], point_b_m[3], normal[3];
+  double distance_m, weight;
+  uint32_t pair, piece_a, level_a, piece_b, level_b, reserved;
+} palpate_contact;
+
+typedef struct palpate_result {
+  double force_N[3], torque_Nm[3]; /* on the tool, torque about the tool's origin */
+  double min_distance_m;           /* NaN without contacts */
+  double error_bound_m, s_worst, force_bound_N;
+  uint64_t units_used, queries, front_nodes;
+  uint32_t contacts, clusters;
+  uint32_t truncated_by_time, truncated_by_units, truncated_by_memory, iteration_cap_met;
+} palpate_result;
+
+/* One contact query and its wrench. poses: [bodies]. */
+palpate_status palpate_tick(palpate_engine* engine, const palpate_pose* poses,
+                            const palpate_budget* budget, palpate_result* out);
+
+/* Contact `index` of the last tick. */
+palpate_status palpate_get_contact(const palpate_engine* engine, uint32_t index,
+                                   palpate_contact* out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* PALPATE_H */

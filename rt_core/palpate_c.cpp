@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// palpate.h over palpate_rt.hpp.
+#include <cstdint>
+#include <limits>
+#include <new>
+#include <type_traits>
+
+#include "rt_core/base/arena.hpp"
+#include "rt_core/palpate.h"
+#include "rt_core/palpate_rt.hpp"
+
+/// What palpate_create() puts in front of the engine.
+struct palpate_engine {
+  palpate::Pose poses[palpate::kMaxBodies];
+  std::uint32_t bodies = 0;
+  palpate::Engine* engine = nullptr;
+  std::span<const palpate::Contact> contacts;
+};
+
+namespace palpate {
+namespace {
+
+// Arrays of the one are read as arrays of the other.
+static_assert(sizeof(ImageView) == sizeof(palpate_image));
+static_assert(alignof(ImageView) == alignof(palpate_image));
+static_assert(sizeof(BodyPair) == sizeof(palpate_pair));
+static_assert(offsetof(BodyPair, b) == offsetof(palpate_pair, b));
+static_assert(std::is_trivially_copyable_v<ImageView> && std::is_standard_layout_v<BodyPair>);
+
+constexpr std::size_t kFront =
+    (sizeof(palpate_engine) + Arena::kAlignment - 1) / Arena::kAlignment * Arena::kAlignment;
+
+palpate_status code(Status status) noexcept { return static_cast<palpate_status>(status); }
+
+bool sound(const palpate_scene* scene) noexcept {
+  return scene != nullptr && scene->images != nullptr && scene->pairs != nullptr &&
+         scene->bodies >= 1 && scene->bodies <= kMaxBodies && scene->pair_count >= 1 &&
+         scene->pair_count <= kMaxPairs;
+}
+
+template <class To>
+const To* as(const void* from) noexcept {
+  return std::launder(static_cast<const To*>(from));
+}
+
+Scene scene_of(const palpate_scene& from) noexcept {
+  return {{as<ImageView>(from.images), from.bodies},
+          {as<BodyPair>(from.pairs), from.pair_count},
+          from.tool};
+}
+
+Limits limits_of(const palpate_limits& from) noexcept {
+  return {.nodes = from.nodes, .contacts = from.contacts, .clusters = from.clusters};
+}
+
+/// False where an enumeration is out of range.
+bool settings_of(const palpate_settings& from, Settings& out) noexcept {
+  if (from.engine > PALPATE_REGIONS || from.exact > 1 || from.interpolate > 1 ||
+      from.bounds > PALPATE_BOUNDS_PAPER || from.order > PALPATE_BY_RATIO) {
+    return false;
+  }
+  out.engine = static_cast<EngineKind>(from.engine);
+  out.exact = from.exact != 0;
+  out.interpolate = from.interpolate != 0;
+  out.bounds = static_cast<Bounds>(from.bounds);
+  out.order = static_cast<Order>(from.order);
+  out.delta_m = from.delta_m;
+  out.s0 = from.s0;
+  out.kappa = from.kappa;
+  out.force_tolerance_N = from.force_tolerance_N;
+  out.stiffness_N_per_m = from.stiffness_N_per_m;
+  out.cluster_radius_m = from.cluster_radius_m;
+  out.max_force_N = from.max_force_N;
+  out.max_torque_Nm = from.max_torque_Nm;
+  return true;
+}
+
+void put(Vec3d from, double (&to)[3]) noexcept {
+  to[0] = from.x;
+  to[1] = from.y;
+  to[2] = from.z;
+}
+
+void put(const TickResult& from, palpate_result& to) noexcept {
+  put(from.wrench.force_N, to.force_N);
+  put(from.wrench.torque_Nm, to.torque_Nm);
+  to.min_distance_m = from.min_distance_m;
+  to.error_bound_m = from.certificate.error_bound_m;
+  to.s_worst = from.certificate.s_worst;
+  to.force_bound_N = from.certificate.force_bound_N;
+  to.units_used = from.certificate.units_used;
+  to.queries = from.queries;
+  to.front_nodes = from.front_nodes;
+  to.contacts = static_cast<std::uint32_t>(from.contacts.size());
+  to.clusters = from.clusters;
+  to.truncated_by_time = from.certificate.truncated_by_time ? 1 : 0;
+  to.truncated_by_units = from.certificate.truncated_by_units ? 1 : 0;
+  to.truncated_by_memory = from.certificate.truncated_by_memory ? 1 : 0;
+  to.iteration_cap_met = from.certificate.iteration_cap_met ? 1 : 0;
+}
+
+Budget budget_of(const palpate_budget& from) noexcept {
+  return {.units = from.units,
+          .clock_ns = from.clock_ns,
+          .clock_context = from.clock_context,
+          .deadline_ns = from.deadline_ns};
+}
+
+}  // namespace
+}  // namespace palpate
+
+using palpate::Status;
+
+extern "C" {
+
+const char* palpate_describe(palpate_status status) {
+  return palpate::describe(static_cast<Status>(status));
+}
+
+palpate_status palpate_open(const void* bytes, size_t size, palpate_image* out) {
+  if (bytes == nullptr || out == nullptr) return PALPATE_BAD_ARGUMENT;
+  palpate::ImageView view;
+  const Status status = palpate::validate({static_cast<const std::byte*>(bytes), size}, view);
+  if (status == Status::ok) new (out->opaque) palpate::ImageView(view);
+  return palpate::code(status);
+}
+
+void palpate_default_settings(palpate_settings* out) {
+  if (out == nullptr) return;
+  const palpate::Settings s;
+  *out = {static_cast<std::uint32_t>(s.engine),
+          s.exact ? 1u : 0u,
+          s.interpolate ? 1u : 0u,
+          static_cast<std::uint32_t>(s.bounds),
+          static_cast<std::uint32_t>(s.order),
+          0,
+          s.delta_m,
+          s.s0,
+          s.kappa,
+          s.force_tolerance_N,
+          s.stiffness_N_per_m,
+          s.cluster_radius_m,
+          s.max_force_N,
+          s.max_torque_Nm};
+}
+
+void palpate_default_limits(palpate_limits* out) {
+  if (out == nullptr) return;
+  const palpate::Limits limits;
+  *out = {limits.nodes, limits.contacts, limits.clusters};
+}
+
+size_t palpate_required_bytes(const palpate_scene* scene, const palpate_limits* limits,
+                              uint32_t engine) {
+  if (!palpate::sound(scene) || limits == nullptr || engine > PALPATE_REGIONS) return 0;
+  const std::size_t bytes =
+      palpate::required_bytes(palpate::scene_of(*scene), palpate::limits_of(*limits),
+                              static_cast<palpate::EngineKind>(engine));
+  return bytes == 0 ? 0 : palpate::kFront + bytes;
+}
+
+palpate_status palpate_create(const palpate_scene* scene, const palpate_settings* settings,
+                              const palpate_limits* limits, void* memory, size_t size,
+                              palpate_engine** out) {
+  palpate::Settings how;
+  if (!palpate::sound(scene) || settings == nullptr || limits == nullptr || memory == nullptr ||
+      out == nullptr || !palpate::settings_of(*settings, how)) {
+    return PALPATE_BAD_ARGUMENT;
+  }
+  if (size < palpate::kFront) return palpate::code(Status::not_enough_memory);
+  auto* front = new (memory) palpate_engine;
+  front->bodies = scene->bodies;
+  const Status status = palpate::create(
+      palpate::scene_of(*scene), how, palpate::limits_of(*limits),
+      {static_cast<std::byte*>(memory) + palpate::kFront, size - palpate::kFront}, front->engine);
+  if (status == Status::ok) *out = front;
+  return palpate::code(status);
+}
+
+palpate_status palpate_configure(palpate_engine* engine, const palpate_settings* settings) {
+  palpate::Settings how;
+  if (engine == nullptr || settings == nullptr || !palpate::settings_of(*settings, how))
+    return PALPATE_BAD_ARGUMENT;
+  return palpate::code(palpate::configure(*engine->engine, how));
+}
+
+palpate_status palpate_tick(palpate_engine* engine, const palpate_pose* poses,
+                            const palpate_budget* budget, palpate_result* out) {
+  if (engine == nullptr || poses == nullptr || budget == nullptr || out == nullptr)
+    return PALPATE_BAD_ARGUMENT;
+  for (std::uint32_t i = 0; i < engine->bodies; ++i) {
+    const double* p = poses[i].position_m;
+    const double* q = poses[i].orientation;
+    engine->poses[i] = {{p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]}};
+  }
+  palpate::TickResult result;
+  const Status status = palpate::tick(*engine->engine, {engine->poses, engine->bodies},
+                                      palpate::budget_of(*budget), result);
+  if (status != Status::ok) return palpate::code(status);
+  engine->contacts = result.contacts;
+  palpate::put(result, *out);
+  return PALPATE_OK;
+}
+
+palpate_status palpate_get_contact(const palpate_engine* engine, uint32_t index,
+                                   palpate_contact* out) {
+  if (engine == nullptr || out == nullptr || index >= engine->contacts.size())
+    return PALPATE_BAD_ARGUMENT;
+  const palpate::Contact& c = engine->contacts[index];
+  palpate::put(c.point_a_m, out->point_a_m);
+  palpate::put(c.point_b_m, out->point_b_m);
+  palpate::put(c.normal, out->normal);
+  out->distance_m = c.distance_m;
+  out->weight = c.weight;
+  out->pair = c.pair;
+  out->piece_a = c.piece_a;
+  out->level_a = c.level_a;
+  out->piece_b = c.piece_b;
+  out->level_b = c.level_b;
+  out->reserved = 0;
+  return PALPATE_OK;
+}
+
+}  // extern "C"

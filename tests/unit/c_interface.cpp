@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// palpate.h gives what palpate_rt.hpp gives, and refuses what it is not given.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../support/tiny_image.hpp"
+#include "rt_core/palpate.h"
+#include "rt_core/palpate_rt.hpp"
+
+extern "C" {
+int run(const void*, size_t, const void*, size_t);
+int read_device(palpate_pose* tool);
+void push_device(const double force_N[3], const double torque_Nm[3]);
+uint64_t cycle_ns(void* context);
+}
+
+namespace palpate::test {
+namespace {
+
+AlignedBytes ball() { return seal(parts_of({ball_part(0.9f, 9, 14)})); }
+AlignedBytes block() { return seal(parts_of({box_part({0, 0, 0}, {0.5f, 0.5f, 0.5f})})); }
+
+constexpr int kTicks = 40;
+
+Pose pose_of(int tick) {
+  const double angle = 0.01 * tick;
+  return {{1.5 - 0.004 * tick, 0.1, 0.05}, {std::cos(angle), 0, std::sin(angle), 0}};
+}
+
+palpate_pose c_pose_of(const Pose& p) {
+  return {{p.position_m.x, p.position_m.y, p.position_m.z},
+          {p.orientation.w, p.orientation.x, p.orientation.y, p.orientation.z}};
+}
+
+std::vector<Vec3d> g_pushed;
+int g_tick = 0;
+
+TEST(CInterface, gives_the_same_bits_as_the_engine) {
+  const AlignedBytes a = ball(), b = block();
+  ImageView views[2];
+  ASSERT_EQ(validate(a, views[0]), Status::ok);
+  ASSERT_EQ(validate(b, views[1]), Status::ok);
+  const BodyPair pairs[1] = {{0, 1}};
+  const Scene scene{views, pairs, 0};
+  AlignedBytes memory(required_bytes(scene, {}));
+  Engine* engine = nullptr;
+  const Settings settings{.delta_m = 0.1};
+  ASSERT_EQ(create(scene, settings, {}, memory, engine), Status::ok);
+
+  palpate_image images[2];
+  ASSERT_EQ(palpate_open(a.data(), a.size(), &images[0]), PALPATE_OK);
+  ASSERT_EQ(palpate_open(b.data(), b.size(), &images[1]), PALPATE_OK);
+  const palpate_pair c_pairs[1] = {{0, 1}};
+  const palpate_scene c_scene{images, 2, c_pairs, 1, 0};
+  palpate_settings c_settings;
+  palpate_limits c_limits;
+  palpate_default_settings(&c_settings);
+  palpate_default_limits(&c_limits);
+  c_settings.delta_m = 0.1;
+  AlignedBytes c_memory(palpate_required_bytes(&c_scene, &c_limits, PALPATE_LEVELS));
+  palpate_engine* c_engine = nullptr;
+  EXPECT_EQ(palpate_create(&c_scene, &c_settings, &c_limits, c_memory.data(), c_memory.size() - 1,
+                           &c_engine),
+            static_cast<palpate_status>(Status::not_enough_memory));
+  ASSERT_EQ(
+      palpate_create(&c_scene, &c_settings, &c_limits, c_memory.data(), c_memory.size(), &c_engine),
+      PALPATE_OK);
+
+  std::uint32_t contacts = 0;
+  for (int i = 0; i < kTicks; ++i) {
+    const Pose poses[2] = {pose_of(i), {}};
+    const palpate_pose c_poses[2] = {c_pose_of(poses[0]), c_pose_of(poses[1])};
+    TickResult r;
+    palpate_result c;
+    ASSERT_EQ(tick(*engine, poses, {.units = 50}, r), Status::ok);
+    const palpate_budget budget{50, nullptr, nullptr, 0};
+    ASSERT_EQ(palpate_tick(c_engine, c_poses, &budget, &c), PALPATE_OK);
+    EXPECT_EQ(std::memcmp(c.force_N, &r.wrench.force_N, sizeof c.force_N), 0);
+    EXPECT_EQ(std::memcmp(c.torque_Nm, &r.wrench.torque_Nm, sizeof c.torque_Nm), 0);
+    EXPECT_EQ(c.error_bound_m, r.certificate.error_bound_m);
+    EXPECT_EQ(c.queries, r.queries);
+    ASSERT_EQ(c.contacts, r.contacts.size());
+    contacts += c.contacts;
+    for (std::uint32_t k = 0; k < c.contacts; ++k) {
+      palpate_contact contact;
+      ASSERT_EQ(palpate_get_contact(c_engine, k, &contact), PALPATE_OK);
+      EXPECT_EQ(contact.distance_m, r.contacts[k].distance_m);
+      EXPECT_EQ(contact.normal[2], r.contacts[k].normal.z);
+      EXPECT_EQ(contact.piece_a, r.contacts[k].piece_a);
+    }
+    palpate_contact none;
+    EXPECT_EQ(palpate_get_contact(c_engine, c.contacts, &none), PALPATE_BAD_ARGUMENT);
+  }
+  EXPECT_GT(contacts, 0u);
+}
+
+TEST(CInterface, refuses_what_it_is_not_given) {
+  palpate_image image;
+  EXPECT_EQ(palpate_open(nullptr, 0, &image), PALPATE_BAD_ARGUMENT);
+  const AlignedBytes a = ball();
+  EXPECT_EQ(palpate_open(a.data(), a.size(), nullptr), PALPATE_BAD_ARGUMENT);
+  EXPECT_EQ(palpate_open(a.data(), a.size() - 64, &image),
+            static_cast<palpate_status>(Status::image_bad_size));
+  EXPECT_STREQ(palpate_describe(PALPATE_OK), "ok");
+  palpate_limits limits;
+  palpate_default_limits(&limits);
+  EXPECT_EQ(palpate_required_bytes(nullptr, &limits, 0), 0u);
+  const palpate_scene nothing{};
+  EXPECT_EQ(palpate_required_bytes(&nothing, &limits, 0), 0u);
+  palpate_settings settings;
+  palpate_default_settings(&settings);
+  palpate_engine* engine = nullptr;
+  EXPECT_EQ(palpate_create(&nothing, &settings, &limits, &image, sizeof image, &engine),
+            PALPATE_BAD_ARGUMENT);
+  EXPECT_EQ(palpate_configure(nullptr, &settings), PALPATE_BAD_ARGUMENT);
+  EXPECT_EQ(palpate_tick(nullptr, nullptr, nullptr, nullptr), PALPATE_BAD_ARGUMENT);
+  EXPECT_EQ(palpate_get_contact(nullptr, 0, nullptr), PALPATE_BAD_ARGUMENT);
+}
+
+TEST(CInterface, loop_on_the_page_runs) {
+  const AlignedBytes a = ball(), b = block();
+  g_pushed.clear();
+  g_tick = 0;
+  EXPECT_EQ(run(a.data(), a.size(), b.data(), b.size()), 0);
+  ASSERT_EQ(g_pushed.size(), static_cast<std::size_t>(kTicks));
+  EXPECT_EQ(run(a.data(), a.size() - 1, b.data(), b.size()), 1);
+}
+
+std::string between(const std::string& text, const std::string& from, const std::string& to) {
+  const std::size_t start = text.find(from) + from.size();
+  return text.substr(start, text.find(to, start) - start);
+}
+
+std::string file(const std::string& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(CInterface, page_shows_the_loop_that_is_tested) {
+  const std::string code =
+      between(file(PALPATE_TESTS "/unit/c_interface_loop.c"), "/* loop */\n", "/* end */");
+  EXPECT_NE(file(PALPATE_DOCS "/EMBEDDING.md").find(code), std::string::npos);
+}
+
+}  // namespace
+
+}  // namespace palpate::test
+
+extern "C" int read_device(palpate_pose* tool) {
+  if (palpate::test::g_tick == palpate::test::kTicks) return 0;
+  *tool = palpate::test::c_pose_of(palpate::test::pose_of(palpate::test::g_tick++));
+  return 1;
+}
+
+extern "C" void push_device(const double force_N[3], const double[3]) {
+  palpate::test::g_pushed.push_back({force_N[0], force_N[1], force_N[2]});
+}
+
+extern "C" uint64_t cycle_ns(void*) { return 0; }
