@@ -18,6 +18,7 @@
 extern "C" {
 #endif
 
+/* NOLINTBEGIN(readability-identifier-naming): names as in C */
 typedef uint16_t palpate_status;
 #define PALPATE_OK 0u
 #define PALPATE_BAD_ARGUMENT 100u
@@ -126,6 +127,8 @@ palpate_status palpate_tick(palpate_engine* engine, const palpate_pose* poses,
 /* Contact `index` of the last tick. */
 palpate_status palpate_get_contact(const palpate_engine* engine, uint32_t index,
                                    palpate_contact* out);
+
+/* NOLINTEND(readability-identifier-naming) */
 
 #ifdef __cplusplus
 }

@@ -167,8 +167,10 @@ palpate_status palpate_create(const palpate_scene* scene, const palpate_settings
       out == nullptr || !palpate::settings_of(*settings, how)) {
     return PALPATE_BAD_ARGUMENT;
   }
-  if (size < palpate::kFront) return palpate::code(Status::not_enough_memory);
-  auto* front = new (memory) palpate_engine;
+  palpate::Arena arena({static_cast<std::byte*>(memory), size});
+  const std::span<palpate_engine> made = arena.array<palpate_engine>(1);
+  if (made.empty()) return palpate::code(Status::not_enough_memory);
+  palpate_engine* front = made.data();
   front->bodies = scene->bodies;
   const Status status = palpate::create(
       palpate::scene_of(*scene), how, palpate::limits_of(*limits),

@@ -5,7 +5,7 @@ if(PALPATE_HOST)
   palpate_test(simplify_test SOURCES unit/simplify_levels.cpp unit/simplify_parts.cpp
     unit/simplify_refusals.cpp unit/simplify_hulls.cpp unit/simplify_awkward.cpp ${simplify_support}
     LIBS palpate_bake)
-  palpate_test(simplify_long_test SOURCES unit/simplify_awkward.cpp ${simplify_support}
-    LIBS palpate_bake LABEL long)
+  palpate_test(simplify_long_test SOURCES unit/simplify_awkward.cpp unit/simplify_resolutions.cpp
+    ${simplify_support} LIBS palpate_bake LABEL long)
   target_compile_definitions(simplify_long_test PRIVATE PALPATE_LONG)
 endif()

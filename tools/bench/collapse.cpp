@@ -11,19 +11,19 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <exception>
 #include <fstream>
 
-int main(int argc, char** argv) {
+namespace {
+
+int measure(const char* file, double triangles) {
   namespace sms = CGAL::Surface_mesh_simplification;
   using Mesh = CGAL::Surface_mesh<CGAL::Simple_cartesian<double>::Point_3>;
   Mesh mesh;
-  std::ifstream in(argc == 3 ? argv[1] : "", std::ios::binary);
-  if (!in || !CGAL::IO::read_PLY(in, mesh)) {
-    std::fprintf(stderr, "usage: bench_collapse MESH.ply TRIANGLES\n");
-    return 2;
-  }
+  std::ifstream in(file, std::ios::binary);
+  if (!in || !CGAL::IO::read_PLY(in, mesh)) return 3;
   // Three edges for two faces: the ratio is the same.
-  const double ratio = std::atof(argv[2]) / static_cast<double>(mesh.number_of_faces());
+  const double ratio = triangles / static_cast<double>(mesh.number_of_faces());
   const std::clock_t start = std::clock();
   sms::edge_collapse(mesh, sms::Count_ratio_stop_predicate<Mesh>(ratio));
   const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
@@ -31,4 +31,17 @@ int main(int argc, char** argv) {
   std::printf("%zu triangles, %.2f s of processor time\n",
               static_cast<std::size_t>(mesh.number_of_faces()), seconds);
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    if (argc == 3) return measure(argv[1], std::strtod(argv[2], nullptr));
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "bench_collapse: %s\n", e.what());
+    return 1;
+  }
+  std::fputs("usage: bench_collapse MESH.ply TRIANGLES\n", stderr);
+  return 2;
 }

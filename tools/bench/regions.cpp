@@ -84,7 +84,7 @@ class Bench {
   }
   /// Of all regions: what clusters make of them is the force stage's affair, and neighbours whose
   /// nearest point is a common one join a cluster or not by the last bit.
-  [[nodiscard]] Vec3d force_N(const TickResult& r) const {
+  [[nodiscard]] Vec3d summed_force(const TickResult& r) const {
     Vec3d sum{};
     for (const Contact& c : r.contacts) {
       sum += (settings_.stiffness_N_per_m * (settings_.delta_m - c.distance_m)) * c.normal;
@@ -196,7 +196,7 @@ Run run(Bench& bench, const std::vector<Pose>& poses, bool cold, double budget_u
     out.contacts.push_back(static_cast<double>(r.contacts.size()));
     out.near.push_back(static_cast<double>(r.front_nodes));
     out.bound_N.push_back(r.certificate.force_bound_N);
-    out.force_N.push_back(bench.force_N(r));
+    out.force_N.push_back(bench.summed_force(r));
   }
   return out;
 }
@@ -233,6 +233,7 @@ void measure(const SceneName& scene, double delta_rel, int ticks) {
   const double reach = scene.interlock ? delta : 0.3 * radius;
   Bench wide(a, b, reach);
   std::vector<Pose> poses;
+  poses.reserve(static_cast<std::size_t>(ticks));
   for (int i = 0; i < ticks; ++i) {
     poses.push_back(scene.interlock ? pressed(wide, a, delta, i)
                                     : sliding(wide, a, b, delta, reach, i));
