@@ -95,6 +95,14 @@ void require_valid(const std::vector<std::byte>& bytes) {
     throw std::logic_error(std::string("the baked image is not valid: ") + describe(status));
 }
 
+// Of level 0. An edge's own normals may see it shorter or longer than the vertex does into which it
+// is collapsed; r does not rise on the way up.
+float resolution_of_original(const NormalMesh& mesh, const std::vector<Vec3d>& normals,
+                             const std::vector<SimplifiedLevel>& levels) {
+  const float own = finest_resolution(mesh, normals);
+  return levels.empty() ? own : std::max(own, static_cast<float>(levels.front().resolution));
+}
+
 struct Simplified {
   std::vector<SimplifiedLevel> levels;
   std::vector<std::vector<float>> deviations;  // s of each patch of each level
@@ -185,7 +193,8 @@ std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const Ba
     return measure_deviation(normal, options.stop_deviation_rel, progress, simplified), 0;
   });
   const Hierarchy tree = timed(report, "merge", [&] {
-    Hierarchy growing = level_zero(normal, patches, finest_resolution(normal, normals));
+    Hierarchy growing =
+        level_zero(normal, patches, resolution_of_original(normal, normals, simplified.levels));
     for (const SimplifiedLevel& level : simplified.levels) add_level(growing, level);
     merge_to_root(growing, progress);
     return growing;

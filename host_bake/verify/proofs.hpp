@@ -21,8 +21,9 @@ Proof prove_no_intrusion(const Evidence& evidence);
 inline constexpr double kIntrusionTolerance = 1e-7 * (1 + 1e-3);  // decompose()'s, and rounding
 
 /// Triangles of the patch and virtual faces together cover each solid hull: all lie on its surface
-/// (exact) and their areas add up to no less than its own (to 1e-9 of it). A flat hull needs no
-/// virtual faces.
+/// (exact) and their areas add up to no less than its own, to 1e-9 of it and kIntrusionTolerance
+/// along its edges: where vertices of the surface lie on a straight edge, rounding bends it inward
+/// (decompose()). A flat hull needs no virtual faces.
 Proof prove_hulls_covered(const Evidence& evidence);
 
 /// The hull vertices are the extreme points of the piece's vertices (exact).

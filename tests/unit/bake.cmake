@@ -6,6 +6,11 @@ if(PALPATE_HOST)
       golden/bake_image.cpp unit/mesh_support.cpp
     LIBS palpate_bake)
 
+  set(awkward_support property/bake_awkward.cpp unit/simplify_random.cpp unit/decompose_shapes.cpp)
+  palpate_test(bake_awkward SOURCES ${awkward_support} LIBS palpate_bake LABEL property)
+  palpate_test(bake_awkward_long SOURCES ${awkward_support} LIBS palpate_bake LABEL long)
+  target_compile_definitions(bake_awkward_long PRIVATE PALPATE_LONG)
+
   find_package(nlohmann_json REQUIRED)
   palpate_test(bake_command_test SOURCES unit/bake_command.cpp
     LIBS palpate_rt nlohmann_json::nlohmann_json)
