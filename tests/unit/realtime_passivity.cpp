@@ -30,10 +30,10 @@ TEST(StiffnessBound, follows_damping_rate_and_delay) {
 TEST(PassivityController, counts_the_work_of_the_hand) {
   PassivityController p;
   p.observe({{0, 0, 2}, {}}, {0, 0, -0.001}, {}, 0.001);  // pushed in against 2 N
-  EXPECT_NEAR(p.energy_J(), 0.002, 1e-15);
+  EXPECT_NEAR(p.work(), 0.002, 1e-15);
   p.observe({{0, 0, 3}, {0.1, 0, 0}}, {0, 0, 0.001}, {0.01, 0, 0}, 0.001);  // pushed out by more
-  EXPECT_NEAR(p.energy_J(), 0.002 - 0.003 - 0.001, 1e-15);
-  EXPECT_EQ(p.energy_J_min(), p.energy_J());
+  EXPECT_NEAR(p.work(), 0.002 - 0.003 - 0.001, 1e-15);
+  EXPECT_EQ(p.least_work(), p.work());
 }
 
 TEST(PassivityController, leaves_a_scene_alone_that_owes_nothing) {
@@ -50,11 +50,11 @@ TEST(PassivityController, takes_back_what_is_owed_and_no_more) {
   const Wrench sent = p.control({}, 0.001);
   EXPECT_NEAR(sent.force_N.z, -10 * 0.01, 1e-12);  // its damper's limit
   p.observe(sent, {0, 0, 1e-5}, {}, 0.001);
-  EXPECT_NEAR(p.energy_J(), -1e-5 + 1e-6, 1e-15);
+  EXPECT_NEAR(p.work(), -1e-5 + 1e-6, 1e-15);
   PassivityController q;
   q.observe({{0, 0, 0.01}, {}}, {0, 0, 1e-5}, {}, 0.001);  // owes 1e-7 J
   q.observe(q.control({}, 0.001), {0, 0, 1e-5}, {}, 0.001);
-  EXPECT_NEAR(q.energy_J(), 0, 1e-15);
+  EXPECT_NEAR(q.work(), 0, 1e-15);
 }
 
 TEST(PassivityController, is_not_spoiled_by_a_bad_reading) {
@@ -62,7 +62,7 @@ TEST(PassivityController, is_not_spoiled_by_a_bad_reading) {
   p.observe({{0, 0, 1}, {}}, {0, 0, 1e-5}, {}, 0.001);
   p.observe({{0, 0, 1}, {}}, {0, 0, std::numeric_limits<double>::quiet_NaN()}, {}, 0.001);
   p.observe({{0, 0, 1}, {}}, {0, 0, 1e-5}, {}, 0);
-  EXPECT_NEAR(p.energy_J(), -1e-5, 1e-18);
+  EXPECT_NEAR(p.work(), -1e-5, 1e-18);
   const Wrench w{{1, 2, 3}, {}};
   EXPECT_EQ(p.control(w, 0.001).force_N, w.force_N);
 }

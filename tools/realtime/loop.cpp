@@ -138,8 +138,8 @@ void Loop::observe_energy(std::uint64_t elapsed_ns) noexcept {
   const Vec3d turned_rad =
       hal::rotation_between(pose_before_.orientation, reading_.pose.orientation);
   passivity_.observe(command_.wrench, moved_m, turned_rad, 1e-9 * static_cast<double>(elapsed_ns));
-  report_.energy_J = passivity_.energy_J();
-  report_.energy_J_min = passivity_.energy_J_min();
+  report_.energy_J = passivity_.work();
+  report_.energy_J_min = passivity_.least_work();
 }
 
 void Loop::account(const Tick& tick) noexcept {

@@ -43,8 +43,8 @@ class PassivityController {
   /// energy is one sum over all six, so that friction in one direction may pay for another. O(1)
   [[nodiscard]] Wrench control(const Wrench& rendered, double period_s) const noexcept;
 
-  [[nodiscard]] double energy_J() const noexcept { return energy_J_; }
-  [[nodiscard]] double energy_J_min() const noexcept { return energy_J_min_; }
+  [[nodiscard]] double work() const noexcept { return energy_J_; }            ///< J
+  [[nodiscard]] double least_work() const noexcept { return energy_J_min_; }  ///< J; at most 0
 
  private:
   Limits limits_;
