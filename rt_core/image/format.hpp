@@ -30,7 +30,7 @@ inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< "no such index"
 /// Also the greatest depth: a child's level is below its parent's.
 inline constexpr std::uint32_t kMaxLevels = 64;
 inline constexpr std::uint32_t kMaxPieces = 1u << 24;
-inline constexpr std::uint32_t kMaxChildren = 256;  ///< children of one piece
+inline constexpr std::uint32_t kMaxChildren = 4096;  ///< children of one piece
 inline constexpr std::uint32_t kMaxHullVertices = 1u << 22;
 /// Triangles of a patch whose back side can be reached.
 inline constexpr std::uint32_t kMaxOpenPatchTriangles = 16;

@@ -137,7 +137,7 @@ TEST(Bake, What_the_format_cannot_hold_is_refused_by_name) {
 }
 
 TEST(Pack, Too_many_children_are_refused_by_name) {
-  Hierarchy tree = testing::triangle_tree(testing::sheet(12));
+  Hierarchy tree = testing::triangle_tree(testing::sheet(46));
   ASSERT_GT(tree.pieces.size(), image::kMaxChildren);
   TreePiece root;
   root.level = 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // palpate inspect: what an image holds, whether its invariants are true, and its levels as meshes.
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -12,7 +13,10 @@
 #include "tools/palpate/image_file.hpp"
 #include "tools/palpate/image_json.hpp"
 #include "tools/palpate/image_text.hpp"
+#include "tools/palpate/level_picture.hpp"
 #include "tools/palpate/level_ply.hpp"
+#include "tools/palpate/output_file.hpp"
+#include "tools/picture/png.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -21,6 +25,8 @@ struct InspectOptions {
   std::string image;
   std::string mesh;                    ///< where the exported level goes
   std::optional<std::uint32_t> level;  ///< to export
+  std::string picture;                 ///< empty: none
+  std::array<double, 3> from = {1, -2, 1.5};
   bool json = false;
   bool verify = false;
 };
@@ -58,10 +64,29 @@ void require_all(const std::vector<bake::Proof>& proofs, const std::string& file
       file, "bake the mesh again");
 }
 
+/// Where the picture is seen from.
+Vec3d direction(const InspectOptions& options) {
+  const auto& [x, y, z] = options.from;
+  if (x != 0 || y != 0 || z != 0) return {x, y, z};
+  throw Failure(kUsage, "no direction", "--from 0 0 0", "give a vector that is not zero");
+}
+
+void write_outputs(const InspectOptions& options, const ImageView& image) {
+  std::optional<OutputFile> mesh, picture;
+  if (options.level) mesh.emplace(options.mesh, level_ply(image, *options.level));
+  if (!options.picture.empty()) {
+    picture.emplace(options.picture,
+                    picture::to_png(level_picture(image, shown_levels(image), direction(options))));
+  }
+  if (mesh) mesh->commit();
+  if (picture) picture->commit();
+}
+
 void inspect(const InspectOptions& options) {
   const ImageFile file(options.image);
   const ImageView& image = file.view();
   check_level(options, image);
+  (void)direction(options);
   std::vector<bake::Proof> proofs;
   if (options.verify) proofs = bake::verify(image);
   if (options.json) {
@@ -73,9 +98,7 @@ void inspect(const InspectOptions& options) {
     print(proofs);
   }
   require_all(proofs, options.image);
-  if (options.level) {
-    write_file(options.mesh, std::span<const std::byte>(level_ply(image, *options.level)));
-  }
+  write_outputs(options, image);
 }
 
 }  // namespace
@@ -93,6 +116,15 @@ void add_inspect(CLI::App& app) {
   auto* mesh = command->add_option("-o,--output", options->mesh, "PLY file for --export-lod");
   level->needs(mesh);
   mesh->needs(level);
+  auto* picture = command->add_option("--picture", options->picture,
+                                      "Write a PNG picture of the original surface, three "
+                                      "simplified and two free levels");
+  command
+      ->add_option("--from", options->from,
+                   "Where the picture is seen from, X Y Z in body axes: a direction")
+      ->check(number_between(-1e9, 1e9))
+      ->needs(picture)
+      ->capture_default_str();
   command->callback([options] { inspect(*options); });
 }
 

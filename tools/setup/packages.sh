@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Debian 12 packages that the project needs, and how they get there. Sourced by tools/demo and tools/test.
 
-packages_build="g++ cmake ninja-build git ca-certificates libcgal-dev libeigen3-dev libtbb-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libusb-1.0-0-dev"
+packages_build="g++ cmake ninja-build git ca-certificates libcgal-dev libeigen3-dev libtbb-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libusb-1.0-0-dev libpng-dev"
 packages_test="libgtest-dev clang libclang-rt-14-dev clang-format clang-tidy binutils python3 gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-newlib g++-aarch64-linux-gnu qemu-user-static umockdev dfu-util"
 
 # need_packages NAME...: installs what is missing; without root by sudo; without either says which are missing and gives up.
