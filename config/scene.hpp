@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "rt_core/force/coupling.hpp"
 #include "rt_core/palpate_rt.hpp"
 
 namespace palpate::config {
@@ -34,6 +35,12 @@ struct Body {
 };
 
 using palpate::EngineKind;
+
+/// What the hand feels.
+enum class Coupling {
+  direct,    ///< the force of the contacts (the paper's)
+  virtual_,  ///< a spring to a simulated tool that feels them
+};
 
 /// One point of the mock hand's script: where the hand wants the tool at a time.
 struct Waypoint {
@@ -65,6 +72,10 @@ struct Scene {
       1000.0;  ///< [limits], 1 MB = 10^6 bytes: a scene that needs more is refused
   std::optional<double> budget_us;  ///< of one tick; absent: unlimited in replay
   double rate_Hz = 1000.0;          ///< [run]: of the real-time loop
+  bool passivity_control = true;    ///< [run]: energy that the loop gives out is taken back
+  std::optional<double> device_damping_N_s_per_m;  ///< [run]: of the device and the hand on it
+  Coupling coupling = Coupling::direct;            ///< [force]
+  force::CouplingSettings virtual_tool;            ///< [coupling]
   std::vector<Body> bodies;
   std::vector<BodyPair> pairs;  ///< as written, or the tool against every other body
   std::uint32_t tool = 0;       ///< index into bodies

@@ -14,6 +14,7 @@ constexpr double kMost = 1e18;
 constexpr std::string_view kEngines[] = {"levels", "regions"};
 constexpr std::string_view kBounds[] = {"tight", "paper"};
 constexpr std::string_view kOrders[] = {"deviation", "nearest", "ratio"};
+constexpr std::string_view kCouplings[] = {"direct", "virtual"};
 constexpr std::string_view kRoles[] = {"tool", "moved", "fixed"};
 
 constexpr Key<Scene> kEngineKeys[] = {
@@ -69,6 +70,28 @@ constexpr Key<Scene> kForceKeys[] = {
     {"max_torque_Nm", "N m",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.max_torque_Nm; }, 0, kMost},
      "the torque on the tool is scaled down to this length"},
+    {"coupling", "",
+     Choice<Scene>{kCouplings,
+                   [](Scene& s, std::size_t i) { s.coupling = static_cast<Coupling>(i); },
+                   [](const Scene& s) { return static_cast<std::size_t>(s.coupling); }},
+     "`palpate run`: the hand feels the contacts, `direct`, or a spring to a simulated tool that "
+     "feels them, `virtual`, which is stable however stiff they are"},
+};
+
+constexpr Key<Scene> kCouplingKeys[] = {
+    {"spring_N_per_m", "N/m",
+     Real<Scene>{[](Scene& s) -> double& { return s.virtual_tool.spring_N_per_m; }, kLeast, kMost},
+     "between hand and simulated tool; its damper is critical"},
+    {"spring_Nm_per_rad", "N m/rad",
+     Real<Scene>{[](Scene& s) -> double& { return s.virtual_tool.spring_Nm_per_rad; }, kLeast,
+                 kMost},
+     "the same about the tool's origin"},
+    {"tool_mass_kg", "kg",
+     Real<Scene>{[](Scene& s) -> double& { return s.virtual_tool.mass_kg; }, kLeast, kMost},
+     "of the simulated tool"},
+    {"tool_inertia_kg_m2", "kg m²",
+     Real<Scene>{[](Scene& s) -> double& { return s.virtual_tool.inertia_kg_m2; }, kLeast, kMost},
+     "moment of inertia of the same about every axis"},
 };
 
 constexpr Key<Scene> kLimitKeys[] = {
@@ -90,6 +113,13 @@ constexpr Key<Scene> kLimitKeys[] = {
 constexpr Key<Scene> kRunKeys[] = {
     {"rate_Hz", "Hz", Real<Scene>{[](Scene& s) -> double& { return s.rate_Hz; }, 1, 20000},
      "rate of the real-time loop"},
+    {"passivity_control", "", Flag<Scene>{[](Scene& s) -> bool& { return s.passivity_control; }},
+     "a damper takes back the energy that the loop has given out of its own"},
+    {"device_damping_N_s_per_m", "N s/m",
+     OptionalReal<Scene>{
+         [](Scene& s) -> std::optional<double>& { return s.device_damping_N_s_per_m; }, 0, kMost},
+     "of the device and the hand that holds it: a stiffness too large for it is lowered; absent: "
+     "the mock hand's, unknown for other devices"},
 };
 
 constexpr Key<Scene> kMockKeys[] = {
@@ -149,6 +179,7 @@ constexpr Key<PairNames> kPairKeys[] = {
 constexpr Table<Scene> kTables[] = {
     {"[engine]", kEngineKeys, "How contacts are found."},
     {"[force]", kForceKeys, "How contacts become a force."},
+    {"[coupling]", kCouplingKeys, "The simulated tool of `coupling = \"virtual\"`."},
     {"[limits]", kLimitKeys,
      "Capacities. More room takes more memory, never more time. Where nodes or contacts are used "
      "up a tick still answers, "

@@ -331,6 +331,7 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
   const force::Penalty penalty = force::penalty(contacts, engine.pairs, engine.tool,
                                                 engine.poses[engine.tool], settings, engine.force);
   out.wrench = force::limited(penalty.wrench, settings);
+  out.stiffness = penalty.stiffness;
   out.clusters = static_cast<std::uint32_t>(2 * penalty.directions + 1) / 2;  // rounded
   out.min_distance_m =
       found.contacts > 0 ? found.min_distance_m : std::numeric_limits<double>::quiet_NaN();

@@ -13,6 +13,7 @@
 #include <span>
 
 #include "rt_core/base/status.hpp"
+#include "rt_core/geometry/matrix6.hpp"
 #include "rt_core/geometry/pose.hpp"
 #include "rt_core/image/view.hpp"
 
@@ -132,6 +133,10 @@ struct Certificate {
 
 struct TickResult {
   Wrench wrench;  ///< on the tool, world axes, torque about the origin of the tool's body frame
+  /// How the wrench falls as the tool moves by a small twist, with shares and normals held: k times
+  /// the sum of share_i J_i^T J_i, J_i = [n_i | r_i x n_i]; positive semidefinite, before limits.
+  /// With it a faster loop may render between ticks: wrench - stiffness * (twist since the tick).
+  Matrix6 stiffness;
   std::span<const Contact> contacts;  ///< valid until the next tick; order is deterministic
   std::uint32_t clusters = 0;  ///< directions that are felt: how often the stiffness is, rounded
   double min_distance_m =

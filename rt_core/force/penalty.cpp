@@ -70,6 +70,8 @@ Penalty penalty(std::span<Contact> contacts, std::span<const BodyPair> pairs, st
     out.directions += share;
     out.wrench.force_N += force_N;
     out.wrench.torque_Nm += cross(f.point_m, force_N);
+    out.stiffness.add_square(vec6(f.direction, cross(f.point_m, f.direction)),
+                             settings.stiffness_N_per_m * share);
   }
   return out;
 }

@@ -21,6 +21,7 @@ struct Workspace {
 /// The wrench before limits, and what it was made of.
 struct Penalty {
   Wrench wrench;             ///< on the tool, world axes, torque about its origin
+  Matrix6 stiffness;         ///< see TickResult
   double directions = 0;     ///< sum of the shares: how many directions are felt, at most about 6
   bool places_full = false;  ///< places found no room: nearby contacts there count more than once
 };

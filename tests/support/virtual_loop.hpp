@@ -57,6 +57,7 @@ inline QueryOf::Function wall(double stiffness_N_per_m) {
     out = {};
     if (tool.position_m.z >= 0) return Status::ok;
     out.wrench.force_N.z = -stiffness_N_per_m * tool.position_m.z;
+    out.stiffness.add_square({0, 0, 1, 0, 0, 0}, stiffness_N_per_m);
     out.min_distance_m = tool.position_m.z;
     out.contacts = {&kContact, 1};
     out.clusters = 1;

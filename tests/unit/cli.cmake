@@ -2,8 +2,8 @@
 find_package(CLI11 REQUIRED)
 set(palpate_cli "${PROJECT_SOURCE_DIR}/tools/palpate")
 palpate_test(cli_test
-  SOURCES unit/cli_poses.cpp unit/cli_output_file.cpp
-    ${palpate_cli}/poses.cpp ${palpate_cli}/output_file.cpp ${palpate_cli}/command.cpp
+  SOURCES unit/cli_poses.cpp unit/cli_output_file.cpp unit/cli_stable_scene.cpp
+    ${palpate_cli}/poses.cpp ${palpate_cli}/output_file.cpp ${palpate_cli}/stable_scene.cpp ${palpate_cli}/command.cpp
   LIBS palpate_tools palpate_bake CLI11::CLI11)
 
 # These run the executable.

@@ -64,6 +64,9 @@ TEST_F(ConfigScene, OnlyBodies_load_defaults) {
   EXPECT_EQ(s.settings.max_torque_Nm, 0.1);
   EXPECT_EQ(s.max_memory_MB, 1000.0);
   EXPECT_EQ(s.rate_Hz, 1000.0);
+  EXPECT_EQ(s.coupling, Coupling::direct);
+  EXPECT_TRUE(s.passivity_control);
+  EXPECT_FALSE(s.device_damping_N_s_per_m.has_value());
   EXPECT_TRUE(s.hand.path.empty());
   ASSERT_EQ(s.bodies.size(), 2u);
   EXPECT_EQ(s.bodies[1].role, Role::fixed);
@@ -84,6 +87,12 @@ stiffness_N_per_m = 500.0
 cluster_radius_m = 0.004
 max_force_N = 2.5
 max_torque_Nm = 0.2
+coupling = "virtual"
+[coupling]
+spring_N_per_m = 700.0
+spring_Nm_per_rad = 0.5
+tool_mass_kg = 0.02
+tool_inertia_kg_m2 = 3e-5
 [limits]
 nodes = 1000
 contacts = 100
@@ -91,6 +100,8 @@ clusters = 10
 max_memory_MB = 64.5
 [run]
 rate_Hz = 2000
+passivity_control = false
+device_damping_N_s_per_m = 1.5
 [mock]
 mass_kg = 0.1
 inertia_kg_m2 = 2e-4
@@ -129,6 +140,13 @@ b = "a"
   EXPECT_EQ(s.settings.cluster_radius_m, 0.004);
   EXPECT_EQ(s.settings.max_force_N, 2.5);
   EXPECT_EQ(s.settings.max_torque_Nm, 0.2);
+  EXPECT_EQ(s.coupling, Coupling::virtual_);
+  EXPECT_EQ(s.virtual_tool.spring_N_per_m, 700.0);
+  EXPECT_EQ(s.virtual_tool.spring_Nm_per_rad, 0.5);
+  EXPECT_EQ(s.virtual_tool.mass_kg, 0.02);
+  EXPECT_EQ(s.virtual_tool.inertia_kg_m2, 3e-5);
+  EXPECT_FALSE(s.passivity_control);
+  EXPECT_EQ(s.device_damping_N_s_per_m, 1.5);
   EXPECT_EQ(s.limits.nodes, 1000u);
   EXPECT_EQ(s.limits.contacts, 100u);
   EXPECT_EQ(s.limits.clusters, 10u);

@@ -134,6 +134,22 @@ TEST(Penalty, weights_add_up_to_the_wrench) {
   EXPECT_NEAR(norm(sum - p.wrench.force_N), 0, 1e-12);
 }
 
+TEST(Penalty, stiffness_tells_how_the_wrench_of_one_contact_falls) {
+  const Vec3d point{0.02, -0.01, 0.005}, normal{0.6, 0, 0.8};
+  const auto wrench_at = [&](Vec3d shift) {  // of the tool, whose point moves with it
+    return feel({at(point, normal, 0.0004 + dot(shift, normal))}).wrench;
+  };
+  const Penalty p = feel({at(point, normal, 0.0004)});
+  const Vec3d shift{1e-7, -2e-7, 3e-7};
+  const Vec6 fall = p.stiffness * vec6(shift, {});
+  const Wrench moved = wrench_at(shift);
+  EXPECT_NEAR(norm(moved.force_N - (p.wrench.force_N - linear(fall))), 0, 1e-12);
+  EXPECT_NEAR(norm(moved.torque_Nm - (p.wrench.torque_Nm - angular(fall))), 0, 1e-12);
+  const Vec6 turned = p.stiffness * vec6({}, {0, 1e-6, 0});
+  EXPECT_NEAR(norm(linear(turned) - 500 * dot(cross(Vec3d{0, 1e-6, 0}, point), normal) * normal), 0,
+              1e-15);
+}
+
 TEST(Penalty, coincident_contacts_give_the_wrench_of_one) {
   Random random{std::mt19937(9)};
   std::vector<Contact> some = random.contacts(12, 0.03);

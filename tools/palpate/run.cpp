@@ -18,6 +18,8 @@
 #include "tools/palpate/device_choice.hpp"
 #include "tools/palpate/run_summary.hpp"
 #include "tools/palpate/scene_engine.hpp"
+#include "tools/palpate/stable_scene.hpp"
+#include "tools/realtime/coupled_query.hpp"
 #include "tools/realtime/engine_query.hpp"
 #include "tools/realtime/loop.hpp"
 #include "tools/realtime/realtime_thread.hpp"
@@ -105,6 +107,7 @@ realtime::LoopSettings loop_settings(const RunOptions& options, const config::Sc
   realtime::LoopSettings settings;
   settings.rate_Hz = rate_Hz;
   settings.budget_us = scene.budget_us;
+  settings.passivity_control = scene.passivity_control;
   if (options.seconds) {
     settings.periods = static_cast<std::uint64_t>(std::llround(*options.seconds * rate_Hz));
   }
@@ -116,6 +119,19 @@ realtime::LoopSettings loop_settings(const RunOptions& options, const config::Sc
   settings.safety.max_force_N = std::min(scene.settings.max_force_N, device.max_force_N);
   settings.safety.max_torque_Nm = std::min(scene.settings.max_torque_Nm, device.max_torque_Nm);
   return settings;
+}
+
+/// Of the device and the hand on it, where it is known.
+std::optional<double> damping(const RunOptions& options, const config::Scene& scene) {
+  if (scene.device_damping_N_s_per_m || options.device != "mock") {
+    return scene.device_damping_N_s_per_m;
+  }
+  return scene.hand.damping_N_s_per_m;
+}
+
+realtime::ContactQuery& query_of(const config::Scene& scene, realtime::ContactQuery& direct,
+                                 realtime::ContactQuery& coupled) {
+  return scene.coupling == config::Coupling::direct ? direct : coupled;
 }
 
 /// Runs the loop to its end, telling how far it has come.
@@ -164,8 +180,12 @@ void run(const RunOptions& options) {
   const double rate_Hz = options.rate_Hz.value_or(scene.rate_Hz);
   hal::MonotonicClock clock;
   const auto device = make_device(options, scene, rate_Hz, clock);
-  SceneEngine engine(scene);
-  realtime::EngineQuery query(engine.engine(), engine.start_poses(), scene.tool);
+  const StableScene stable = stable_scene(scene, rate_Hz, damping(options, scene));
+  if (!stable.note.empty() && !options.quiet) std::cerr << stable.note << "\n";
+  SceneEngine engine(stable.scene);
+  realtime::EngineQuery contacts(engine.engine(), engine.start_poses(), scene.tool);
+  realtime::CoupledQuery coupled(contacts, stable.scene.virtual_tool, 1 / rate_Hz);
+  realtime::ContactQuery& query = query_of(scene, contacts, coupled);
   if (const auto problem = device->open()) fail(options.device, *problem);
 
   const auto settings = loop_settings(options, scene, rate_Hz, device->capabilities());

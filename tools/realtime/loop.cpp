@@ -85,7 +85,9 @@ std::uint64_t Loop::run_tick(std::uint64_t due_ns) noexcept {
   tick.begin_ns = clock_.now_ns();
   read_device(tick);
   query_contacts(tick);
-  send(safety_.command(tick.status, tick.result.wrench));
+  Wrench rendered = tick.result.wrench;
+  if (settings_.passivity_control) rendered = passivity_.control(rendered, 1 / settings_.rate_Hz);
+  send(safety_.command(tick.status, rendered));
   tick.end_ns = clock_.now_ns();
 
   const std::uint64_t late = elapsed(due_ns, tick.end_ns) / period_ns_;
@@ -98,8 +100,9 @@ std::uint64_t Loop::run_tick(std::uint64_t due_ns) noexcept {
 
 void Loop::read_device(Tick& tick) noexcept {
   const bool had_reading = reading_.sequence != 0;
+  const std::uint64_t before_ns = reading_.time_ns;
   const bool fresh = device_.receive(reading_);
-  if (fresh && had_reading) observe_energy();
+  if (fresh && had_reading) observe_energy(elapsed(before_ns, reading_.time_ns));
   if (fresh) pose_before_ = reading_.pose;
   tick.state_age_ns = elapsed(reading_.time_ns, tick.begin_ns);
   const hal::DeviceState* newest = reading_.sequence != 0 ? &reading_ : nullptr;
@@ -130,16 +133,13 @@ void Loop::send(const Wrench& wrench) noexcept {
   device_.send(command_);
 }
 
-void Loop::observe_energy() noexcept {
+void Loop::observe_energy(std::uint64_t elapsed_ns) noexcept {
   const Vec3d moved_m = reading_.pose.position_m - pose_before_.position_m;
   const Vec3d turned_rad =
       hal::rotation_between(pose_before_.orientation, reading_.pose.orientation);
-  const double work_J =
-      -(dot(command_.wrench.force_N, moved_m) + dot(command_.wrench.torque_Nm, turned_rad));
-  // A reading that is not a number is the safety stage's business; it must not spoil the sum.
-  if (!std::isfinite(work_J)) return;
-  report_.energy_J += work_J;
-  report_.energy_J_min = std::min(report_.energy_J_min, report_.energy_J);
+  passivity_.observe(command_.wrench, moved_m, turned_rad, 1e-9 * static_cast<double>(elapsed_ns));
+  report_.energy_J = passivity_.work();
+  report_.energy_J_min = passivity_.least_work();
 }
 
 void Loop::account(const Tick& tick) noexcept {

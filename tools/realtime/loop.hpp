@@ -16,6 +16,7 @@
 #include "hal/ring.hpp"
 #include "tools/realtime/contact_query.hpp"
 #include "tools/realtime/histogram.hpp"
+#include "tools/realtime/passivity.hpp"
 #include "tools/realtime/safety.hpp"
 #include "tools/realtime/thread_counters.hpp"
 #include "tools/realtime/trace.hpp"
@@ -37,6 +38,7 @@ struct LoopSettings {
   std::uint32_t warm_up_ticks = 100;
   /// A command's life: the device goes to zero force by itself this long after the last one.
   double command_life_s = 0.02;
+  bool passivity_control = false;  ///< energy given out is taken back by a damper (passivity.hpp)
   SafetySettings safety;
 };
 
@@ -58,9 +60,8 @@ struct LoopReport {
   double force_N_max = 0;
   double torque_Nm_max = 0;
   /// Work that the hand has done on the scene, sum of -(F . dx + T . dtheta) with the command in
-  /// force between two readings: the passivity observer of Hannaford and Ryu, "Time-domain
-  /// passivity control of haptic interfaces", IEEE Trans. Robotics and Automation 18(1), 2002.
-  /// Where it falls below zero the loop has given out energy of its own.
+  /// force between two readings (PassivityController). Where it falls below zero the loop has given
+  /// out energy of its own.
   double energy_J = 0;
   double energy_J_min = 0;                    ///< its least value; at most 0
   LoopState state = LoopState::disconnected;  ///< at the end
@@ -95,7 +96,7 @@ class Loop {
   void read_device(Tick& tick) noexcept;
   void query_contacts(Tick& tick) noexcept;
   void send(const Wrench& wrench) noexcept;
-  void observe_energy() noexcept;
+  void observe_energy(std::uint64_t elapsed_ns) noexcept;
   void account(const Tick& tick) noexcept;
   void record(const Tick& tick) noexcept;
 
@@ -105,6 +106,7 @@ class Loop {
   hal::Clock& clock_;
   hal::Ring<TraceRecord>* telemetry_;
   SafetyStage safety_;
+  PassivityController passivity_;
   std::uint64_t period_ns_;
   std::uint64_t start_ns_ = 0;
   hal::DeviceState reading_;    ///< the newest; none yet where its sequence is 0
