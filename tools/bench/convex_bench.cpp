@@ -98,6 +98,7 @@ void measure_palpate(benchmark::State& state, const Case& what) {
 void measure_fcl(benchmark::State& state, const Case& what) {
   const std::vector<Motion> motions = make_motions(what.vertices, what.coherence, kPairs, kSteps);
   std::vector<FclMotion> peers;
+  peers.reserve(motions.size());
   for (const Motion& motion : motions) peers.emplace_back(motion);
   Times times;
   std::vector<PeerAnswer> answers(kPairs * kSteps);
