@@ -59,7 +59,8 @@ bool Places::corners_of(Vec3d point_m, Corners& out) const noexcept {
 }
 
 Place* Places::find(std::int32_t x, std::int32_t y, std::int32_t z) noexcept {
-  std::size_t at = (static_cast<std::uint64_t>(hash_of(x, y, z)) * table_.size()) >> 32;
+  auto at = static_cast<std::size_t>(
+      (static_cast<std::uint64_t>(hash_of(x, y, z)) * table_.size()) >> 32);
   for (int probe = 0; probe < kMostProbes; ++probe) {
     Place& place = table_[at];
     if (place.tick != tick_) {

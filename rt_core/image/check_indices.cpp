@@ -10,7 +10,8 @@ bool corners_sound(const std::uint32_t (&v)[3], std::uint32_t vertices) noexcept
 }
 
 bool source_sound(const Triangle& triangle, const Piece& piece, const Header& header) noexcept {
-  return piece.level == 0 && header.dropped_levels == 0 ? triangle.source < header.source_triangles : triangle.source == kNone;
+  return piece.level == 0 && header.dropped_levels == 0 ? triangle.source < header.source_triangles
+                                                        : triangle.source == kNone;
 }
 
 bool faces_sound(const ImageView& image, const Piece& piece) noexcept {

@@ -46,7 +46,8 @@ bool take_adjacency(const ImageView& image, const Piece& piece, Cursor& cursor) 
 }
 
 bool take_runs(const ImageView& image, const Piece& piece, Cursor& cursor) noexcept {
-  return piece.culling_vertices <= kMaxCullingVertices && piece.hull_vertices >= 1 && piece.hull_vertices <= piece.vertices &&
+  return piece.culling_vertices <= kMaxCullingVertices && piece.hull_vertices >= 1 &&
+         piece.hull_vertices <= piece.vertices &&
          take(piece.first_vertex, piece.vertices, image.vertices.size(), cursor.vertices) &&
          take_adjacency(image, piece, cursor) &&
          take(piece.first_triangle, piece.triangles, image.triangles.size(), cursor.triangles) &&
@@ -95,8 +96,7 @@ bool numbers_sound(const Piece& piece, float level_resolution) noexcept {
          within(piece.radius, 0.0f, kMaxLength) &&
          within(piece.surface_deviation, 0.0f, kMaxLength) &&
          within(piece.hausdorff, 0.0f, kMaxLength) && culling_sound(piece) &&
-         piece.resolution == level_resolution &&
-         within(piece.min_support_area, kMinArea, kMaxArea);
+         piece.resolution == level_resolution && within(piece.min_support_area, kMinArea, kMaxArea);
 }
 
 }  // namespace
