@@ -69,10 +69,11 @@ std::vector<std::uint32_t> shown_levels(const ImageView& image) {
   const auto root = static_cast<std::uint32_t>(image.levels.size()) - 1;
   const std::uint32_t free_levels = image.header->free_levels;
   const std::uint32_t coarsest = root - free_levels;
-  std::vector<std::uint32_t> levels = {
-      0,   (coarsest + 1) / 3, (2 * coarsest + 1) / 3, coarsest, coarsest + (free_levels + 1) / 2,
-      root};
-  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  std::vector<std::uint32_t> levels;
+  for (const std::uint32_t level : {0u, (coarsest + 1) / 3, (2 * coarsest + 1) / 3, coarsest,
+                                    coarsest + (free_levels + 1) / 2, root}) {
+    if (levels.empty() || levels.back() != level) levels.push_back(level);
+  }
   return levels;
 }
 
