@@ -28,7 +28,9 @@ std::array<Eigen::Vector3d, image::kMaxCullingVertices> even_directions() {
   return directions;
 }
 
-Eigen::Vector3d eigen(const PointF& p) { return {p[0], p[1], p[2]}; }
+Eigen::Vector3d eigen(const PointF& p) {
+  return Eigen::Map<const Eigen::Vector3f>(p.data()).cast<double>();
+}
 
 // Maps a direction so that extreme points along it are those of the points with their covariance
 // made a sphere.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "host_bake/mesh/check.hpp"
+#include "host_bake/metrics/vector.hpp"
 #include "host_bake/verify/proofs.hpp"
 
 namespace palpate::bake {
@@ -36,7 +37,10 @@ Mesh mesh_of(const Evidence& evidence, std::uint32_t level) {
         const PointF& p = evidence.points[i][t.vertices[k]];
         const auto [place, is_new] =
             index_of.try_emplace(p, static_cast<std::uint32_t>(mesh.points.size()));
-        if (is_new) mesh.points.push_back({p[0], p[1], p[2]});
+        if (is_new) {
+          const Vec3d at = vec(p);
+          mesh.points.push_back({at.x, at.y, at.z});
+        }
         face[k] = place->second;
       }
       mesh.faces.push_back(face);
@@ -58,7 +62,10 @@ std::map<std::string, std::size_t> faults(const CheckReport& report) {
 
 Triangles original_triangles(const Evidence& evidence) {
   Triangles out;
-  const auto at = [](const PointF& p) { return Kernel::Point_3(p[0], p[1], p[2]); };
+  const auto at = [](const PointF& p) {
+    const Vec3d v = vec(p);
+    return Kernel::Point_3(v.x, v.y, v.z);
+  };
   for (const std::uint32_t i : alive_at(evidence.image, 0)) {
     const auto& p = evidence.points[i];
     for (const image::Triangle& t : patch(evidence, evidence.image.pieces[i])) {
