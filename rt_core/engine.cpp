@@ -67,10 +67,12 @@ void lay_out_levels(Arena& arena, const Limits& limits, levels::QueryMemory& out
   const auto nodes = arena.array<levels::Node>(limits.nodes);
   const auto front = arena.array<std::uint32_t>(limits.nodes);
   const auto waiting = arena.array<levels::Waiting>(limits.nodes);
+  const auto stopped = arena.array<std::uint32_t>(limits.nodes);
   const auto scratch = arena.array<convex::PenetrationScratch>(1);
   if (scratch.empty()) return;
   out.tree = levels::TestTree(nodes, front);
   out.waiting = waiting;
+  out.stopped = stopped;
   out.scratch = &scratch[0];
 }
 
@@ -150,7 +152,8 @@ bool normalise(const Pose& in, Pose& out) noexcept {
 }
 
 /// Does an image without its finest levels serve these settings against this partner?
-bool serves(const ImageView& image, const ImageView& partner, const Settings& settings) noexcept {
+bool is_fine_enough(const ImageView& image, const ImageView& partner,
+                    const Settings& settings) noexcept {
   const image::Header& header = *image.header;
   if (header.dropped_levels == 0) return true;
   const image::Level& finest = image.levels[0];
@@ -162,11 +165,11 @@ bool serves(const ImageView& image, const ImageView& partner, const Settings& se
          (s_m <= settings.kappa * settings.delta_m);
 }
 
-bool serve(const Engine& engine, const Settings& settings) noexcept {
+bool all_fine_enough(const Engine& engine, const Settings& settings) noexcept {
   if (settings.engine != EngineKind::levels) return true;
   for (const levels::PairState& pair : engine.states) {
-    if (!serves(*pair.image_a, *pair.image_b, settings) ||
-        !serves(*pair.image_b, *pair.image_a, settings)) {
+    if (!is_fine_enough(*pair.image_a, *pair.image_b, settings) ||
+        !is_fine_enough(*pair.image_b, *pair.image_a, settings)) {
       return false;
     }
   }
@@ -298,14 +301,14 @@ Status create(const Scene& scene, const Settings& settings, const Limits& limits
   } else {
     begin_regions(scene, engine->regions);
   }
-  if (!serve(*engine, settings)) return Status::image_too_coarse;
+  if (!all_fine_enough(*engine, settings)) return Status::image_too_coarse;
   out_engine = engine;
   return Status::ok;
 }
 
 Status configure(Engine& engine, const Settings& settings) noexcept {
   if (!sound(settings) || settings.engine != engine.settings.engine) return Status::bad_argument;
-  if (!serve(engine, settings)) return Status::image_too_coarse;
+  if (!all_fine_enough(engine, settings)) return Status::image_too_coarse;
   engine.settings = settings;
   return Status::ok;
 }

@@ -157,14 +157,12 @@ class Engine;
 
 /// Makes an engine inside `memory` (64-byte aligned, at least required_bytes). It needs no
 /// destruction: drop the memory. Errors: bad_argument, not_enough_memory, image_missing_section,
-/// image_too_coarse.
-/// Touches every byte of the memory it will use.
+/// image_too_coarse. Touches every byte of the memory it will use.
 Status create(const Scene& scene, const Settings& settings, const Limits& limits,
               std::span<std::byte> memory, Engine*& out_engine) noexcept;
 
 /// Replaces the settings between ticks; the kind of engine stays. Errors: bad_argument,
-/// image_too_coarse (nothing is
-/// changed).
+/// image_too_coarse (nothing is changed). O(pairs).
 Status configure(Engine& engine, const Settings& settings) noexcept;
 
 /// One contact query and its wrench.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "host_bake/base/parallel.hpp"
 #include "host_bake/hierarchy/dop.hpp"
@@ -18,14 +19,10 @@ std::vector<std::uint32_t> patch_of_face(const SimplifiedLevel& level) {
   return owner;
 }
 
-// Patches that share an edge with each patch, ascending.
+// Patches that share an edge with each patch.
 std::vector<std::vector<std::uint32_t>> neighbours(const SimplifiedLevel& level,
                                                    const std::vector<std::uint32_t>& owner) {
-  struct Side {
-    std::uint32_t low, high, patch;
-    auto operator<=>(const Side&) const = default;
-  };
-  std::vector<Side> sides;
+  std::vector<OwnedSide> sides;
   sides.reserve(3 * level.mesh.faces.size());
   for (std::uint32_t f = 0; f < level.mesh.faces.size(); ++f) {
     const Face& face = level.mesh.faces[f];
@@ -34,17 +31,10 @@ std::vector<std::vector<std::uint32_t>> neighbours(const SimplifiedLevel& level,
       sides.push_back({low, high, owner[f]});
     }
   }
-  std::sort(sides.begin(), sides.end());
   std::vector<std::vector<std::uint32_t>> lists(level.patches.size());
-  for (std::size_t i = 1; i < sides.size(); ++i) {
-    const Side &a = sides[i - 1], &b = sides[i];
-    if (a.low != b.low || a.high != b.high || a.patch == b.patch) continue;
-    lists[a.patch].push_back(b.patch);
-    lists[b.patch].push_back(a.patch);
-  }
-  for (auto& list : lists) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
+  for (const auto& [a, b] : owners_that_meet(std::move(sides))) {
+    lists[a].push_back(b);
+    lists[b].push_back(a);
   }
   return lists;
 }

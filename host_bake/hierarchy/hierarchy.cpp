@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
-#include <tuple>
+#include <utility>
 
 #include "host_bake/base/parallel.hpp"
 #include "host_bake/hierarchy/adopt.hpp"
@@ -91,13 +91,22 @@ std::vector<std::uint32_t> top_pieces(const Hierarchy& tree) {
   return top;
 }
 
+std::vector<PiecePair> owners_that_meet(std::vector<OwnedSide> sides) {
+  std::sort(sides.begin(), sides.end());
+  std::vector<PiecePair> pairs;
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    const OwnedSide &a = sides[i - 1], &b = sides[i];
+    if (a.low == b.low && a.high == b.high && a.owner != b.owner)
+      pairs.emplace_back(a.owner, b.owner);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
 std::vector<PiecePair> edge_neighbours(const Hierarchy& tree,
                                        const std::vector<std::uint32_t>& pieces) {
-  struct Side {
-    std::uint32_t low, high, position;
-    auto operator<=>(const Side&) const = default;
-  };
-  std::vector<Side> sides;
+  std::vector<OwnedSide> sides;
   for (std::uint32_t position = 0; position < pieces.size(); ++position) {
     const TreePiece& piece = tree.pieces[pieces[position]];
     for (const image::Triangle& t : piece.triangles) {
@@ -108,16 +117,7 @@ std::vector<PiecePair> edge_neighbours(const Hierarchy& tree,
       }
     }
   }
-  std::sort(sides.begin(), sides.end());
-  std::vector<PiecePair> pairs;
-  for (std::size_t i = 1; i < sides.size(); ++i) {
-    const Side &a = sides[i - 1], &b = sides[i];
-    if (a.low == b.low && a.high == b.high && a.position != b.position)
-      pairs.emplace_back(a.position, b.position);
-  }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  return pairs;
+  return owners_that_meet(std::move(sides));
 }
 
 std::vector<PointF> positions(const Hierarchy& tree, std::span<const std::uint32_t> points) {

@@ -76,6 +76,16 @@ std::span<const std::uint32_t> enclosing_points(const TreePiece& piece);
 /// The pieces that have no parent, ascending.
 std::vector<std::uint32_t> top_pieces(const Hierarchy& tree);
 
+/// One side of a triangle, and whose.
+struct OwnedSide {
+  std::uint32_t low, high;  ///< its vertices
+  std::uint32_t owner;
+  auto operator<=>(const OwnedSide&) const = default;
+};
+
+/// Pairs of owners that have a side in common, ascending, each once. O(n log n).
+std::vector<PiecePair> owners_that_meet(std::vector<OwnedSide> sides);
+
 /// Pairs of positions in `pieces` whose triangles share an edge, ascending, each once. O(n log n)
 /// in the triangles.
 std::vector<PiecePair> edge_neighbours(const Hierarchy& tree,

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "host_bake/metrics/exact.hpp"
+#include "host_bake/metrics/nearest_on_triangle.hpp"
 #include "host_bake/metrics/vector.hpp"
 
 namespace palpate::bake {
@@ -16,31 +17,6 @@ double largest(Vec3d v) { return std::max({std::abs(v.x), std::abs(v.y), std::ab
 // (b - a) x (c - a) . (p - a) in double, |p - a| <= 2.51: off by less than 100 roundings of its
 // largest term.
 constexpr double kPlaneRoundings = 256 * 2.51 * std::numeric_limits<double>::epsilon();
-
-Vec3d closest_on_segment(Vec3d p, Vec3d a, Vec3d b) {
-  const double length_squared = squared_norm(b - a);
-  if (length_squared == 0) return a;
-  return a + std::clamp(dot(p - a, b - a) / length_squared, 0.0, 1.0) * (b - a);
-}
-
-// Closest point of a triangle; source: Ericson, Real-Time Collision Detection, 2005, Sec. 5.1.5.
-Vec3d closest_on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
-  const Vec3d ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-  if (d1 <= 0 && d2 <= 0) return a;
-  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-  if (d3 >= 0 && d4 <= d3) return b;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + (d1 / (d1 - d3)) * ab;
-  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-  if (d6 >= 0 && d5 <= d6) return c;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + (d2 / (d2 - d6)) * ac;
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 >= d3 && d5 >= d6) return b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b);
-  const double scale = 1 / (va + vb + vc);
-  return a + (vb * scale) * ab + (vc * scale) * ac;
-}
 
 }  // namespace
 
@@ -81,11 +57,11 @@ double HullSide::distance(const PointF& p) const {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& f : faces_) {
     const Vec3d closest =
-        closest_on_triangle(at, vec(points_[f[0]]), vec(points_[f[1]]), vec(points_[f[2]]));
+        nearest_on_triangle(at, vec(points_[f[0]]), vec(points_[f[1]]), vec(points_[f[2]]));
     least = std::min(least, norm(at - closest));
   }
   if (dimension_ < 2) {
-    least = norm(at - closest_on_segment(at, vec(points_.front()), vec(points_.back())));
+    least = norm(at - nearest_on_segment(at, vec(points_.front()), vec(points_.back())));
   }
   return least;
 }

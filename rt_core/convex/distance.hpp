@@ -46,6 +46,11 @@ struct Distance {
   std::uint32_t iterations = 0;  ///< support pairs found
 };
 
+/// The hulls touch or share points.
+[[nodiscard]] inline bool overlaps(const Distance& d) noexcept {
+  return d.state == State::penetrating || d.state == State::touching;
+}
+
 inline constexpr std::uint32_t kMaxDistanceIterations = 64;
 
 // Relative to the sum of the scales.

@@ -17,7 +17,7 @@ class Group {
     const Piece& a = piece_a(pair_, node);
     const Piece& b = piece_b(pair_, node);
     const convex::Distance d = on_.probe.own(pair_, node);
-    if (d.state == convex::State::penetrating || d.state == convex::State::touching) return false;
+    if (convex::overlaps(d)) return false;
     const Detail missing = detail(pair_, a, b, d, on_.rules);
     node.s_star = static_cast<float>(missing.s_star);
     node.excess = static_cast<float>(missing.excess);
@@ -118,7 +118,8 @@ void interpolate(const Interpolation& on) noexcept {
     Node& node = on.tree[parent];
     node.report = kNone;
     clear(node, kOfThisTick);
-    set(node, kMeasured | kStopped);
+    set(node, kMeasured);
+    on.stopped.add(node, parent);
   }
 }
 

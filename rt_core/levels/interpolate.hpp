@@ -9,6 +9,7 @@
 #include "rt_core/convex/penetration.hpp"
 #include "rt_core/levels/probe.hpp"
 #include "rt_core/levels/report.hpp"
+#include "rt_core/levels/stopped.hpp"
 #include "rt_core/levels/test_tree.hpp"
 
 namespace palpate::levels {
@@ -20,6 +21,7 @@ struct Interpolation {
   const Rules& rules;
   Probe& probe;
   Report& report;
+  Stopped& stopped;
   convex::PenetrationScratch& scratch;
   Meter& meter;
   std::uint32_t tick = 0;  ///< marks inner nodes that have been measured

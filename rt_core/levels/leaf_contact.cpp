@@ -162,8 +162,7 @@ LeafContact nearest_parts(const PairState& pair, const Piece& a, const Piece& b,
       convex::Cache cold;
       const convex::Distance d = convex::distance(hull_a, hull_b, pair.b_in_a, best.distance, cold);
       ++queries;
-      if (d.state == convex::State::penetrating || d.state == convex::State::touching)
-        out_crossing = true;
+      if (convex::overlaps(d)) out_crossing = true;
       if (d.distance >= best.distance) continue;
       if (!parts_a.triangles && !witness_a_real(pair, a, d)) continue;
       if (!parts_b.triangles && !witness_b_real(pair, b, d)) continue;
@@ -196,8 +195,7 @@ LeafContact overlapping(const PairState& pair, const Piece& a, const Piece& b,
 LeafContact leaf_contact(const PairState& pair, const Piece& a, const Piece& b,
                          const convex::Distance& query, const convex::Cache& cache, double reach,
                          std::uint32_t most_queries, convex::PenetrationScratch& scratch) noexcept {
-  const bool overlap =
-      query.state == convex::State::penetrating || query.state == convex::State::touching;
+  const bool overlap = convex::overlaps(query);
   const bool virtual_a = overlap ? !has(a, PieceFlag::all_real) : !witness_a_real(pair, a, query);
   const bool virtual_b = overlap ? !has(b, PieceFlag::all_real) : !witness_b_real(pair, b, query);
   const bool exposed =

@@ -8,6 +8,7 @@
 #include "rt_core/levels/leaf_contact.hpp"
 #include "rt_core/levels/probe.hpp"
 #include "rt_core/levels/report.hpp"
+#include "rt_core/levels/stopped.hpp"
 
 namespace palpate::levels {
 namespace {
@@ -52,7 +53,8 @@ class Query {
         meter_(meter),
         probe_(rules, meter),
         report_(memory.contacts),
-        waiting_(memory.waiting) {}
+        waiting_(memory.waiting),
+        stopped_(memory.stopped) {}
 
   QueryResult run() noexcept {
     ++memory_.ticks;
@@ -61,8 +63,8 @@ class Query {
     refine();
     if (!truncated()) {
       if (rules_.interpolate && !rules_.exact)
-        interpolate({memory_.pairs, tree_, rules_, probe_, report_, *memory_.scratch, meter_,
-                     memory_.ticks});
+        interpolate({memory_.pairs, tree_, rules_, probe_, report_, stopped_, *memory_.scratch,
+                     meter_, memory_.ticks});
       raise();
       tighten();
     }
@@ -220,9 +222,7 @@ class Query {
     const bool refines = missing.refine_a || missing.refine_b;
     if (d.lower_bound < pair.delta) {
       // Overlap of simplified hulls is no contact: the last one, of an ancestor apart, stands.
-      const bool overlap =
-          d.state == convex::State::penetrating || d.state == convex::State::touching;
-      if (!refines || !overlap) touch(index, pair, a, b, d, !refines);
+      if (!refines || !convex::overlaps(d)) touch(index, pair, a, b, d, !refines);
     } else {
       node.contact = 0;
     }
@@ -230,7 +230,7 @@ class Query {
       allow(node, missing.refine_a, missing.refine_b);
       wait_for_split(index);
     } else {
-      set(node, kStopped);
+      stopped_.add(node, index);
     }
   }
 
@@ -347,9 +347,9 @@ class Query {
 
   /// Stopped nodes stand for original surface that is somewhere within their bounds.
   QueryResult finish() noexcept {
-    for (const std::uint32_t index : tree_.front()) {
+    for (const std::uint32_t index : stopped_.all()) {
       const Node& node = tree_[index];
-      if ((node.flags & kStopped) != 0 && is_approximate(node))
+      if (tree_.in_front(index) && is_approximate(node))
         leave_unresolved(certain_now(pair_of(node), node) * pair_of(node).unit_m, node);
     }
     report_.finish(result_);
@@ -418,10 +418,10 @@ class Query {
   /// than h does.
   void tighten() noexcept {
     if (rules_.exact || rules_.bounds == Bounds::paper) return;
-    for (const std::uint32_t index : tree_.front()) {
+    for (const std::uint32_t index : stopped_.all()) {
       const Node& node = tree_[index];
       const PairState& pair = pair_of(node);
-      if ((node.flags & kStopped) == 0 || !probe_.has_tighter(pair, node)) continue;
+      if (!tree_.in_front(index) || !probe_.has_tighter(pair, node)) continue;
       const double certain_m = certain_now(pair, node) * pair.unit_m;
       waiting_.push({certain_m, certain_m, index, false});
     }
@@ -442,6 +442,7 @@ class Query {
   Probe probe_;
   Report report_;
   WaitQueue waiting_;
+  Stopped stopped_;
   QueryResult result_{.unresolved_lower_m = kInfinity};
 };
 

@@ -28,8 +28,9 @@ struct Waiting {
 struct QueryMemory {
   std::span<PairState> pairs;
   TestTree tree;
-  std::span<Waiting> waiting;   ///< [nodes]
-  std::span<Contact> contacts;  ///< [limits.contacts]
+  std::span<Waiting> waiting;        ///< [nodes]
+  std::span<std::uint32_t> stopped;  ///< [nodes]; those that refinement stopped at in this tick
+  std::span<Contact> contacts;       ///< [limits.contacts]
   convex::PenetrationScratch* scratch = nullptr;
   std::size_t raise_next = 0;  ///< where in the front raising goes on
   std::uint32_t ticks = 0;     ///< marks inner nodes that interpolation has been to

@@ -36,10 +36,6 @@ void set_rest(const PairState& pair, Node& node, double rest) noexcept;
 /// First bounds of a node that has none: its spheres, and what its parent is certain of.
 void begin(const PairState& pair, Node& node, double inherited) noexcept;
 
-inline bool overlaps(const convex::Distance& d) noexcept {
-  return d.state == convex::State::penetrating || d.state == convex::State::touching;
-}
-
 /// Does the queries, charges them, and proves the bounds that follow for the original surface.
 class Probe {
  public:

@@ -39,7 +39,7 @@ double larger(double a, double b) noexcept { return a > b ? a : b; }
 Detail detail(const PairState& pair, const Piece& a, const Piece& b, const convex::Distance& query,
               const Rules& rules) noexcept {
   Detail out;
-  if (query.state == convex::State::penetrating || query.state == convex::State::touching) {
+  if (convex::overlaps(query)) {
     out.refine_a = a.children != 0;
     out.refine_b = b.children != 0;
     out.s_star = out.excess = out.refine_a || out.refine_b ? kInfinity : 0;

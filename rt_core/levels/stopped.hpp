@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The nodes at which refinement stopped in this tick: what follows it need not look at the whole
+// front again.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/levels/test_tree.hpp"
+
+namespace palpate::levels {
+
+class Stopped {
+ public:
+  /// @param storage  [nodes of the tree]: a node stops once a tick
+  explicit Stopped(std::span<std::uint32_t> storage) noexcept : storage_(storage) {}
+
+  void add(Node& node, std::uint32_t index) noexcept {
+    PALPATE_ASSERT(count_ < storage_.size());
+    set(node, kStopped);
+    storage_[count_++] = index;
+  }
+
+  /// In the order in which they stopped, those among them whose parent has taken their place since.
+  [[nodiscard]] std::span<const std::uint32_t> all() const noexcept {
+    return storage_.first(count_);
+  }
+
+ private:
+  std::span<std::uint32_t> storage_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace palpate::levels
