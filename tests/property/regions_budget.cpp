@@ -6,9 +6,9 @@
 #include <cstring>
 #include <limits>
 
+#include "tests/support/allocation_trap.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/shapes.hpp"
-#include "tools/realtime/thread_counters.hpp"
 
 namespace palpate::test {
 namespace {
@@ -199,32 +199,12 @@ TEST(RegionsAllocationTrap, mixed_ticks_call_no_allocator_and_fault_no_page) {
   BakedScene scene({bodies().a.view, bodies().b.view, c.view}, {{0, 1}, {0, 2}}, kSettings);
   Pose poses[3];
   poses[2] = {{3.2, 0.1, 1}, turn({0, 1, 0})};
-  TickResult result;
   const auto place = [&](int i) {
     poses[0] = motion(i);
     poses[0].position_m.x += 0.1 * std::sin(0.01 * i);  // parts and overlaps
     poses[0].position_m.z = 0.2 * std::cos(0.002 * i);
   };
-  for (int i = 0; i < 700; ++i) {  // maps code and stack
-    place(i);
-    ASSERT_EQ(tick(*scene.engine, poses, {}, result), Status::ok);
-  }
-  const realtime::ThreadCounters before = realtime::thread_counters();
-  bool sound = true;
-  std::size_t contacts = 0;
-  for (int i = 0; i < 5000; ++i) {
-    place(i);
-    const Budget budget = i % 3 == 0 ? Budget{.units = 50} : Budget{};
-    sound &= tick(*scene.engine, poses, budget, result) == Status::ok;
-    contacts += result.contacts.size();
-  }
-  const realtime::ThreadCounters spent = realtime::thread_counters() - before;
-  EXPECT_TRUE(sound);
-  EXPECT_GT(contacts, 5000u);
-  if (!spent.allocator_calls) GTEST_SKIP() << "a sanitizer brings an allocator of its own";
-  EXPECT_EQ(*spent.allocator_calls, 0u);
-  EXPECT_EQ(spent.minor_faults, 0u);
-  EXPECT_EQ(spent.major_faults, 0u);
+  expect_no_allocation_and_no_fault(scene, poses, place, 700, 5000);
 }
 
 }  // namespace

@@ -3,10 +3,9 @@
 // that hold wherever a search ends, overlap that begins at zero.
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "rt_core/regions/sweep.hpp"
 #include "tests/support/brute_force.hpp"
+#include "tests/support/placements.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace palpate::test {
@@ -17,26 +16,6 @@ constexpr bake::ForEngine kRegions = bake::ForEngine::regions;
 Settings exact_settings(double delta) {
   return {
       .engine = EngineKind::regions, .delta_m = delta, .exact = true, .cluster_radius_m = delta};
-}
-
-Vec3d random_unit(std::mt19937& rng) {
-  std::normal_distribution<double> g;
-  const Vec3d v{g(rng), g(rng), g(rng)};
-  return (1 / norm(v)) * v;
-}
-
-/// A pose of a around b in which they are `gap` apart along a direction, by conservative
-/// advancement.
-Pose approach(const bake::Mesh& a, const bake::Mesh& b, double gap, double far, Vec3d direction,
-              Quat orientation) {
-  Pose pose{far * direction, orientation};
-  const PlacedTriangles fixed(b, {});
-  for (int i = 0; i < 40; ++i) {
-    const double d = distance_of(PlacedTriangles(a, pose), fixed);
-    if (d <= gap * 1.001) break;
-    pose.position_m -= (d - gap) * direction;
-  }
-  return pose;
 }
 
 /// Least distance of each region of a from b, or `most`.
@@ -87,21 +66,11 @@ TEST_P(RegionsExact, minima_of_all_regions_agree_with_brute_force) {
     const double delta = 0.05 * std::min(a.view.header->radius_m, b.view.header->radius_m);
     BakedScene scene({a.view, b.view}, {{0, 1}}, exact_settings(delta));
     const PlacedTriangles fixed(b.mesh, {});
-    std::mt19937 rng(11);
-    for (int jump = 0; jump < 4; ++jump) {
-      Vec3d direction = random_unit(rng);
-      Quat orientation = turn(3.0 * random_unit(rng));
-      for (int step = 0; step < 3; ++step) {
-        const double gap = delta * (0.1 + 0.3 * step);
-        const Pose poses[2] = {approach(a.mesh, b.mesh, gap, 4 * unit, direction, orientation), {}};
-        const TickResult result = tick_or_fail(*scene.engine, poses);
-        const PlacedTriangles moved(a.mesh, poses[0]);
-        expect_region_minima(result, region_distances(a, moved, fixed, 2 * delta), delta, unit);
-        direction = direction + 0.01 * random_unit(rng);
-        direction = (1 / norm(direction)) * direction;
-        orientation = turn(0.01 * random_unit(rng)) * orientation;
-      }
-    }
+    for_each_placement(a, b, delta, 4, [&](std::span<const Pose> poses) {
+      const TickResult result = tick_or_fail(*scene.engine, poses);
+      const PlacedTriangles moved(a.mesh, poses[0]);
+      expect_region_minima(result, region_distances(a, moved, fixed, 2 * delta), delta, unit);
+    });
   }
 }
 
@@ -248,21 +217,7 @@ TEST(RegionsCrossing, overlap_begins_at_zero_and_grows_with_depth) {
 TEST(RegionsExact, moving_both_bodies_turns_the_wrench_with_them) {
   BakedScene one({bodies().a.view, bodies().b.view}, {{0, 1}}, exact_settings(0.05));
   BakedScene other({bodies().a.view, bodies().b.view}, {{0, 1}}, exact_settings(0.05));
-  const Pose world{{3, -2, 5}, turn({0.7, -1.1, 0.4})};
-  const Mat3d r = rotation(world.orientation);
-  for (int i = 0; i < 50; ++i) {
-    const Pose poses[2] = {
-        {{1.81 - 0.0002 * i, 0.1, 0.002 * i}, turn({0.3 + 0.003 * i, 0.2, 0.001 * i})}, {}};
-    Pose moved[2];
-    for (int k = 0; k < 2; ++k) {
-      moved[k] = {world.position_m + r * poses[k].position_m,
-                  world.orientation * poses[k].orientation};
-    }
-    const Wrench w = tick_or_fail(*one.engine, poses).wrench;
-    const Wrench v = tick_or_fail(*other.engine, moved).wrench;
-    EXPECT_NEAR(norm(r * w.force_N - v.force_N), 0, 1e-4 * (norm(w.force_N) + 1e-3));
-    EXPECT_NEAR(norm(r * w.torque_Nm - v.torque_Nm), 0, 1e-4 * (norm(w.torque_Nm) + 1e-3));
-  }
+  expect_wrench_turns_with_the_world(one, other);
 }
 
 }  // namespace
