@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-foreach(part degenerate penetration random)
+foreach(part degenerate penetration random triangles)
   palpate_test(test_convex_${part}
     SOURCES "${CMAKE_CURRENT_LIST_DIR}/convex_${part}.cpp" "${CMAKE_CURRENT_LIST_DIR}/convex_shapes.cpp"
     LIBS palpate_rt)

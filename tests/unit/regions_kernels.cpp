@@ -11,7 +11,7 @@
 #include <random>
 #include <span>
 
-#include "rt_core/convex/triangles.hpp"
+#include "tests/support/triangle_distance.hpp"
 
 namespace palpate::regions {
 namespace {
@@ -117,13 +117,13 @@ Pairs random_pairs(Random& random) {
   return pairs;
 }
 
-convex::TriangleDistance truth(const Pairs& pairs, std::uint32_t i) {
+test::TriangleDistance truth(const Pairs& pairs, std::uint32_t i) {
   Vec3d a[3], b[3];
   for (int c = 0; c < 3; ++c) {
     a[c] = mapped(pairs.map, corner(pairs.a[i], c));
     b[c] = corner(pairs.b[i], c);
   }
-  return convex::triangle_distance(a, b);
+  return test::triangle_distance(a, b);
 }
 
 std::span<const Kernels* const> tables() {
@@ -273,7 +273,7 @@ TEST(RegionKernels, Witnesses_are_as_far_apart_as_the_triangles) {
     WitnessLanes found;
     best_kernels().witnesses(*scratch, found);
     for (std::uint32_t i = 0; i < kBatch; ++i) {
-      const convex::TriangleDistance exact = truth(pairs, i);
+      const test::TriangleDistance exact = truth(pairs, i);
       const Vec3d apart{double(found.apart[0][i]), double(found.apart[1][i]),
                         double(found.apart[2][i])};
       if ((found.crossing >> i & 1) != 0) {
