@@ -58,6 +58,7 @@ void add_inspect(CLI::App& app);
 void add_emit(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_run(CLI::App& app);
+void add_report(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_flash(CLI::App& app);
 void add_doctor(CLI::App& app);

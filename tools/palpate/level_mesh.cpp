@@ -54,4 +54,10 @@ LevelMesh level_mesh(const ImageView& image, std::uint32_t level) {
   return mesh;
 }
 
+LevelMesh piece_mesh(const ImageView& image, std::uint32_t piece) {
+  LevelMesh mesh;
+  add_piece(mesh, image, piece);
+  return mesh;
+}
+
 }  // namespace palpate::cli

@@ -21,4 +21,7 @@ struct LevelMesh {
 /// @param level  < image.levels.size()
 LevelMesh level_mesh(const ImageView& image, std::uint32_t level);
 
+/// One piece alone. @param piece  < image.pieces.size()
+LevelMesh piece_mesh(const ImageView& image, std::uint32_t piece);
+
 }  // namespace palpate::cli

@@ -30,6 +30,7 @@ constexpr std::initializer_list<void (*)(CLI::App&)> kCommands = {
     add_emit,
     add_replay,
     add_run,
+    add_report,
     add_devices,
     add_flash,
     add_doctor,

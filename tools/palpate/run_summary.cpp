@@ -3,41 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
+
+#include "tools/palpate/words.hpp"
 
 namespace palpate::cli {
 namespace {
 
 using realtime::Histogram;
 using realtime::LoopReport;
-
-[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
-
-/// 12345678 as 12,345,678.
-std::string grouped(std::uint64_t value) {
-  std::string digits = std::to_string(value);
-  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
-  return digits;
-}
-
-std::string count_of(std::uint64_t count, const char* one, const char* many) {
-  return grouped(count) + " " + (count == 1 ? one : many);
-}
-
-std::string duration(std::uint64_t ns) {
-  const double value = static_cast<double>(ns);
-  if (ns < 1000) return format("%.0f ns", value);
-  if (ns < 1'000'000) return format("%.1f us", value / 1e3);
-  return format("%.2f ms", value / 1e6);
-}
 
 double share(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `palpate report`: one HTML file from a sweep, a replay or a run (docs/REPORT.md).
+#include <memory>
+#include <string>
+
+#include "tools/palpate/command.hpp"
+#include "tools/palpate/report_contacts.hpp"
+#include "tools/palpate/report_input.hpp"
+#include "tools/palpate/report_json.hpp"
+#include "tools/palpate/report_page.hpp"
+
+namespace palpate::cli {
+namespace {
+
+struct Arguments {
+  std::string source, output;
+  ReportHints hints;
+  bool no_view = false, quiet = false;
+};
+
+ShownContacts contacts_of(const ReportInput& input, const Frames& frames,
+                          const bake::Progress& show) {
+  const ReportScene& view = *input.view;
+  return view.contacts.empty() ? replay_shown_contacts(view, frames, show)
+                               : read_shown_contacts(view, input.lines[view.contacts_of], frames);
+}
+
+void run(const Arguments& a) {
+  const std::filesystem::path page = report_page();  // before any work is done
+  ReportInput input = read_report_input(a.source, a.hints);
+  if (a.no_view) input.view.reset();
+  const bake::Progress show = progress(a.quiet);
+  const Frames frames =
+      input.lines.empty() ? Frames() : frames_of(input.lines.front().ticks.size());
+  nlohmann::ordered_json view;
+  if (input.view) view = view_json(*input.view, contacts_of(input, frames, show), frames);
+  nlohmann::ordered_json data = report_json(input, frames);
+  data["view"] = std::move(view);
+  write_file(a.output, fill_page(page, data));
+}
+
+}  // namespace
+
+void add_report(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "report", "Show a sweep, a replay or a run: one HTML file that needs no network");
+  const auto a = std::make_shared<Arguments>();
+  command
+      ->add_option("SOURCE", a->source,
+                   "folder of a sweep, folder with the tables of replays, or trace of a run")
+      ->required();
+  command->add_option("-o,--output", a->output, "write the report (HTML)")->required();
+  command->add_option("--scene", a->hints.scene,
+                      "scene for the 3D view, where the source does not say it");
+  command->add_option("--poses", a->hints.poses,
+                      "poses for the 3D view, where the source does not say it");
+  command->add_flag("--no-view", a->no_view, "leave out the 3D view");
+  command->add_flag("--quiet", a->quiet, "print no progress");
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace palpate::cli

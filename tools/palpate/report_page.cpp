@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/palpate/report_page.hpp"
+
+#include <string_view>
+#include <system_error>
+
+#include "config/text_file.hpp"
+#include "tools/palpate/command.hpp"
+
+namespace palpate::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPlace = "@PALPATE_REPORT@";
+constexpr const char* kMend =
+    "install node (Debian package nodejs) and build the target report_bundle, once with a network";
+
+/// JSON in which no "<" is left: "</script>" in a name would end the element.
+std::string for_html(const nlohmann::ordered_json& data) {
+  const std::string text =
+      data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<') {
+      out += "\\u003c";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+fs::path report_page() {
+  std::error_code error;
+  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const fs::path& page : {folder / "report.html", folder / "../share/palpate/report.html"}) {
+    if (fs::exists(page, error)) return page;
+  }
+  throw Failure(kOther, "this build has no page for reports", (folder / "report.html").string(),
+                kMend);
+}
+
+std::string fill_page(const fs::path& page, const nlohmann::ordered_json& data) {
+  std::string text;
+  if (const std::error_code error = config::read_text(page, text)) {
+    throw Failure(kOther, "cannot read the page for reports (" + error.message() + ")",
+                  page.string(), kMend);
+  }
+  const std::size_t place = text.find(kPlace);
+  if (place == std::string::npos || text.find(kPlace, place + 1) != std::string::npos) {
+    throw Failure(kOther, "not a page for reports", page.string(), kMend);
+  }
+  return text.replace(place, kPlace.size(), for_html(data));
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Figures in the words of a summary.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace palpate::cli {
+
+/// printf into a string of at most 255 characters.
+[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
+
+/// 12345678 as "12,345,678".
+std::string grouped(std::uint64_t value);
+
+/// "1 tick", "2,000 ticks".
+std::string count_of(std::uint64_t count, const char* one, const char* many);
+
+/// With the unit that fits: "812 ns", "15.1 us", "13.42 ms".
+std::string duration(std::uint64_t ns);
+
+}  // namespace palpate::cli

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plots with uPlot: line plots over frames, and scatter plots. Colours are the style sheet's.
+import uPlot from 'uplot';
+import 'uplot/dist/uPlot.min.css';
+import { number } from './units.js';
+
+const rebuilds = [];
+const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const colourOf = (index) => style(`--series-${index % 8}`);
+
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+  for (const rebuild of rebuilds) rebuild();
+});
+
+const isPowerOfTen = (v) => Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-6;
+
+function axis(label, log, size) {
+  const line = { stroke: () => style('--line'), width: 1 };
+  // Powers of ten alone, on a logarithmic axis: what lies between would run into each other.
+  const powers = log ? { filter: (_, splits) => splits.map((v) => (v !== null && isPowerOfTen(v) ? v : null)) } : {};
+  return {
+    label,
+    stroke: () => style('--quiet'),
+    grid: { ...line, ...powers },
+    ticks: { ...line, ...powers, size: 5 },
+    ...powers,
+    font: '12px system-ui, sans-serif',
+    labelFont: '13px system-ui, sans-serif',
+    labelSize: 20,
+    size,
+    values: (_, splits) => splits.map((v) => (v === null ? '' : number(v))),
+  };
+}
+
+/// Gaps are null; a logarithmic axis has no place for zero either.
+const values = (list, log) => Array.from(list, (v) => (Number.isFinite(v) && !(log && v <= 0) ? v : null));
+
+function seriesOptions(series, index) {
+  const colour = () => colourOf(series.colour ?? index);
+  const points = series.kind === 'points';
+  return {
+    label: series.name,
+    stroke: colour,
+    width: points ? 0 : series.width ?? 1.5,
+    dash: series.dash,
+    spanGaps: series.kind === 'joined',
+    paths: points ? () => null : series.kind === 'steps' ? uPlot.paths.stepped({ align: 1 }) : undefined,
+    points: { show: points, size: series.size ?? 9, fill: colour },
+    value: (_, v) => number(v),
+  };
+}
+
+/// One table of x for all: points of different series seldom share theirs.
+function joined(series, logX, logY) {
+  return uPlot.join(
+    series.map((s) => {
+      const order = values(s.x, logX)
+        .map((x, i) => [x, i])
+        .filter(([x]) => x !== null)
+        .sort((a, b) => a[0] - b[0]);
+      const y = values(s.values, logY);
+      // Two points of a series at one place would be one.
+      for (let i = 1; i < order.length; ++i) {
+        if (order[i][0] <= order[i - 1][0]) order[i][0] = order[i - 1][0] * (1 + 1e-9);
+      }
+      return [order.map(([x]) => x), order.map(([, i]) => y[i])];
+    }),
+  );
+}
+
+/// Adds a plot to `host`.
+/// series: [{name, values, x?, kind: 'line' | 'joined' | 'points' | 'steps', colour?}]; with `x` of
+/// their own, or all over the common x.
+/// Returns {show(x)}: moves the line that marks the page's frame.
+export function addPlot(host, { title, x, series, xLabel, yLabel, logX, logY, height = 240, onClick, onPoint }) {
+  const heading = document.createElement('h3');
+  heading.textContent = title;
+  const place = document.createElement('div');
+  host.append(heading, place);
+  host.dataset.points = 0;
+  const table = x ? [values(x, logX), ...series.map((s) => values(s.values, logY))] : joined(series, logX, logY);
+  const filled = table.slice(1).flat().filter((v) => v !== null && v !== undefined).length;
+  host.dataset.points = filled;
+  const mark = document.createElement('div');
+  mark.className = 'now';
+  mark.hidden = true;
+  let plot;
+  let shown = null;
+
+  const moveMark = () => {
+    mark.hidden = shown === null;
+    if (shown !== null) mark.style.left = `${plot.valToPos(shown, 'x')}px`;
+  };
+  const scale = (log) => (log ? { distr: 3 } : {});
+  const build = () => {
+    plot?.destroy();
+    plot = new uPlot(
+      {
+        width: Math.max(260, place.clientWidth),
+        height,
+        scales: { x: { time: false, ...scale(logX) }, y: scale(logY) },
+        axes: [axis(xLabel, logX, 34), axis(yLabel, logY, 66)],
+        series: [{ label: xLabel, value: (_, v) => number(v, 5) }, ...series.map(seriesOptions)],
+        cursor: { drag: { x: true, y: false }, points: { size: 7 } },
+        hooks: {
+          setScale: [() => plot && moveMark()],
+          setCursor: [(u) => onPoint?.(u)],
+        },
+      },
+      table,
+      place,
+    );
+    plot.over.append(mark);
+    plot.over.addEventListener('click', () => {
+      if (onClick && plot.cursor.idx !== null && plot.select.width === 0) onClick(plot.cursor.idx);
+    });
+    moveMark();
+  };
+  build();
+  rebuilds.push(build);
+  new ResizeObserver(() => {
+    const width = Math.max(260, place.clientWidth);
+    if (width === plot.width) return;
+    plot.setSize({ width, height });
+    moveMark();
+  }).observe(place);
+  return {
+    show(value) {
+      shown = value;
+      moveMark();
+    },
+  };
+}

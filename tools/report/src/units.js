@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Numbers as people read them.
+
+export function number(value, digits = 3) {
+  if (value === null || value === undefined || Number.isNaN(value)) return '–';
+  if (value === 0) return '0';
+  const size = Math.abs(value);
+  return size >= 1e-3 && size < 1e7
+    ? new Intl.NumberFormat('en', { maximumSignificantDigits: digits }).format(value)
+    : value.toExponential(digits - 1).replace(/\.?0+e/, 'e');
+}
+
+export const percent = (share) => (share === null ? '–' : `${number(100 * share)} %`);
+export const millimetres = (metres) => (metres === null ? '–' : `${number(1e3 * metres)} mm`);
+
+export function duration(us) {
+  if (us === null || Number.isNaN(us)) return 'not timed';
+  if (us < 1) return `${number(us * 1e3)} ns`;
+  return us < 1000 ? `${number(us)} µs` : `${number(us * 1e-3)} ms`;
+}

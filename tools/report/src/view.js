@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The 3D view and its controls.
+import { counts, floats } from './data.js';
+import { Stage } from './stage.js';
+import { millimetres, number } from './units.js';
+
+const at = (id) => document.getElementById(id);
+const kNotShown = 0xffffffff;
+
+/// The contacts of each frame, with both sides by name.
+class Contacts {
+  constructor(packed) {
+    this.starts = counts(packed.starts);
+    this.found = counts(packed.found);
+    this.points = floats(packed.points);
+    this.distances = floats(packed.distances);
+    this.sides = counts(packed.sides);
+  }
+
+  ofFrame(frame) {
+    const out = [];
+    for (let i = this.starts[frame]; i < this.starts[frame + 1]; ++i) {
+      const side = (k) => {
+        const [body, place, level] = this.sides.subarray(6 * i + 3 * k, 6 * i + 3 * k + 3);
+        return { body, place: place === kNotShown ? null : place, level, point: this.points.subarray(6 * i + 3 * k, 6 * i + 3 * k + 3) };
+      };
+      out.push({ distance: this.distances[i], a: side(0), b: side(1) });
+    }
+    return out;
+  }
+}
+
+/// "level 0: 3, level 4: 12"
+function levelsOf(contacts, body) {
+  const pieces = new Map();
+  for (const side of contacts.flatMap((c) => [c.a, c.b])) {
+    if (side.body !== body) continue;
+    if (!pieces.has(side.level)) pieces.set(side.level, new Set());
+    pieces.get(side.level).add(side.place);
+  }
+  return [...pieces]
+    .sort((x, y) => x[0] - y[0])
+    .map(([level, set]) => `level ${level}: ${set.size}`)
+    .join(', ');
+}
+
+function describe(view, data, frame, contacts, found, stage) {
+  const tick = frame * data.frames.stride;
+  const force = Math.hypot(...stage.forceAt(frame));
+  const position = stage.positionOf(view.tool, frame);
+  const least = contacts.reduce((d, c) => Math.min(d, c.distance), Infinity);
+  const shown = contacts.length < found ? `${contacts.length} of ${found} contacts shown` : `${found} contacts`;
+  const pieces = view.bodies
+    .map((body, i) => [body.name, levelsOf(contacts, i)])
+    .filter(([, levels]) => levels !== '')
+    .map(([name, levels]) => `Pieces of ${name}: ${levels}.`);
+  return (
+    `Tick ${tick}, ${number(stage.times[frame], 4)} s. Force ${number(force)} N. ${shown}` +
+    `${found > 0 ? `, least distance ${millimetres(least)}` : ''}. ` +
+    `Tool moved by (${Array.from(position, (v) => (1e3 * v).toFixed(2)).join(', ')}) mm. ${pieces.join(' ')}`
+  );
+}
+
+function addBodyChoices(view, stage) {
+  view.bodies.forEach((body, index) => {
+    const label = document.createElement('label');
+    const choice = document.createElement('select');
+    for (const look of ['solid', 'see-through', 'hidden']) choice.add(new Option(look, look));
+    choice.value = index === view.tool ? 'see-through' : 'solid';
+    choice.addEventListener('change', () => stage.setLook(index, choice.value));
+    stage.setLook(index, choice.value);
+    label.append(`${body.name} `, choice);
+    at('bodies').append(label);
+  });
+}
+
+function addLegend(view, stage) {
+  const levels = Math.max(...view.images.map((image) => image.levels));
+  const entry = (colour, text) => {
+    const item = document.createElement('span');
+    const chip = document.createElement('i');
+    chip.style.background = colour;
+    item.append(chip, text);
+    at('levels').append(item);
+  };
+  for (let level = 0; level < levels; ++level) {
+    const name = level === 0 ? 'level 0, the original surface' : level === levels - 1 ? `${level}, one piece` : `${level}`;
+    entry(stage.colourOfLevel(level, levels), name);
+  }
+  entry('var(--overlap)', 'contact where the pieces overlap');
+  entry('var(--ink)', 'contact with a gap');
+}
+
+function addTransport(playhead) {
+  const slider = at('frame');
+  slider.max = playhead.count - 1;
+  slider.addEventListener('input', () => playhead.set(slider.valueAsNumber));
+  playhead.onChange((frame) => {
+    slider.value = frame;
+  });
+  const button = at('play');
+  let timer = null;
+  button.addEventListener('click', () => {
+    if (timer !== null) {
+      clearInterval(timer);
+      timer = null;
+    } else {
+      timer = setInterval(() => playhead.set((playhead.frame + 1) % playhead.count), 40);
+    }
+    button.textContent = timer === null ? 'Play' : 'Pause';
+    button.setAttribute('aria-pressed', String(timer !== null));
+  });
+}
+
+export function showView(data, playhead) {
+  const { view } = data;
+  at('view').hidden = false;
+  at('origin').textContent =
+    `${view.origin} ` +
+    view.bodies
+      .map(({ name, image }) => {
+        const { level, triangles, source_triangles: source } = view.images[image];
+        return `${name} is drawn at level ${level} (${number(triangles, 6)} of ${number(source, 7)} triangles).`;
+      })
+      .join(' ');
+  const contacts = new Contacts(view.contacts);
+  let stage;
+  try {
+    stage = new Stage(at('stage'), view, floats(data.frames.t_s));
+  } catch {
+    at('stage').textContent = 'This browser does not show 3D (WebGL is off or missing).';
+    return;
+  }
+  addTransport(playhead);
+  addBodyChoices(view, stage);
+  addLegend(view, stage);
+  const show = (frame) => {
+    const shown = contacts.ofFrame(frame);
+    stage.show(frame, shown);
+    at('reading').textContent = describe(view, data, frame, shown, contacts.found[frame], stage);
+  };
+  playhead.onChange(show);
+  at('fit').addEventListener('click', () => stage.lookAtAll());
+  at('near').addEventListener('click', () => stage.lookAtContacts());
+  playhead.set(stage.strongestFrame());  // begin where there is something to see
+  stage.lookAtAll();
+}
