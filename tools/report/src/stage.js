@@ -88,10 +88,10 @@ export class Stage {
     this.#paint();
   }
 
-  /// From yellow, the finest, to blue, the coarsest: light and hue both change.
+  /// From amber, the finest, by green and blue to violet, the coarsest.
   colourOfLevel(level, levels) {
     const share = levels > 1 ? level / (levels - 1) : 0;
-    return `#${new Color().setHSL(0.13 + 0.55 * share, 0.85, 0.58 - 0.12 * share).getHexString()}`;
+    return `#${new Color().setHSL(0.11 + 0.66 * share, 0.8, 0.56 - 0.1 * share).getHexString()}`;
   }
 
   /// The frame in which the tool feels most.
