@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Not in the regular suite: Chromium takes two minutes to install on a bare machine.
+find_program(PALPATE_CHROMIUM NAMES chromium chromium-browser google-chrome DOC "Shows reports to their test")
+if(TARGET report_bundle AND PALPATE_CHROMIUM)
+  add_test(NAME report_browser
+    COMMAND "${PALPATE_NODE}" "${PROJECT_SOURCE_DIR}/tests/browser/report.mjs" "${PALPATE_CHROMIUM}" "$<TARGET_FILE:palpate>"
+      "${PROJECT_SOURCE_DIR}/tests/data/sweep.json")
+  set_tests_properties(report_browser PROPERTIES LABELS "long;browser" TIMEOUT 600)
+endif()
