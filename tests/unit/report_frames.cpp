@@ -18,7 +18,9 @@ TEST(ReportFrames, frames_cover_every_tick_and_stay_below_the_limit) {
       EXPECT_LE(frames.count, limit);
       EXPECT_LT(frames.tick(frames.count - 1), ticks);
       EXPECT_GE(frames.tick(frames.count), ticks);
-      if (ticks <= limit) EXPECT_EQ(frames.count, ticks);
+      if (ticks <= limit) {
+        EXPECT_EQ(frames.count, ticks);
+      }
     }
   }
 }

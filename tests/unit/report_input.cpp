@@ -134,7 +134,7 @@ TEST_F(ReportFolder, sweep_shows_exact_runs_and_best_trades_of_many) {
   ASSERT_EQ(input.lines.size(), kMaxReportLines);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(input.lines[i].exact) << input.lines[i].name;
   for (std::size_t i = 3; i < 6; ++i) {
-    EXPECT_EQ(input.lines[i].name.rfind("regions-ft", 0), 0u) << input.lines[i].name;
+    EXPECT_EQ(input.lines[i].name.rfind("regions, force tolerance", 0), 0u) << input.lines[i].name;
   }
   ASSERT_EQ(input.notes.size(), 1u);
   EXPECT_TRUE(input.view);
@@ -155,7 +155,7 @@ class ReportTrace : public ::testing::Test {
     std::string bytes(sizeof header, '\0');
     std::memcpy(bytes.data(), &header, sizeof header);
     bytes += scene;
-    for (const std::uint64_t period : {0, 1, 3}) {
+    for (const std::uint64_t period : {0u, 1u, 3u}) {
       realtime::TraceRecord r;
       r.time_ns = period * 1'000'000;
       if (period > 0) r.orientation = {1, 0, 0, 0};  // before: no reading yet

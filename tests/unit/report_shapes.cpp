@@ -13,7 +13,7 @@ namespace palpate::cli {
 namespace {
 
 const test::BakedBody& body() {
-  static const test::BakedBody baked(bake::make_model("ellipsoid", 400, 1));
+  static const test::BakedBody baked(bake::make_model("golf_ball", 800, 1));
   return baked;
 }
 
@@ -30,6 +30,7 @@ TEST(ReportShapes, shape_is_the_finest_level_that_fits) {
 }
 
 TEST(ReportShapes, level_that_is_not_free_is_shown_where_none_fits) {
+  ASSERT_EQ(body().view.levels.back().free, 1u);
   const Shape shape = shape_of(body().view, 1);
   EXPECT_EQ(body().view.levels[shape.level].free, 0u);
   EXPECT_EQ(body().view.levels[shape.level + 1].free, 1u);

@@ -40,8 +40,8 @@ inline std::string cube_poses(int ticks) {
 }
 
 /// Rows that differ from each other in every figure.
-inline std::vector<TickRow> some_ticks(std::size_t count) {
-  std::vector<TickRow> rows(count);
+inline std::vector<cli::TickRow> some_ticks(std::size_t count) {
+  std::vector<cli::TickRow> rows(count);
   for (std::size_t i = 0; i < count; ++i) {
     const auto x = static_cast<double>(i);
     rows[i].t_s = 0.001 * x;

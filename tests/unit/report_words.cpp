@@ -48,7 +48,7 @@ TEST(ReportWords, sweep_says_what_no_setting_reaches_and_what_broke) {
   std::erase_if(input.settings, [](const SweepPoint& p) { return p.engine == "regions"; });
   input.settings[4].certificates_broken = 2;
   const std::string text = joined(input);
-  expect_said(text, "No setting keeps the error of the force within 1 %.");
+  expect_said(text, "No setting but the exact ones keeps the error of the force within 1 %.");
   expect_said(text, "2 certificates were broken");
 }
 

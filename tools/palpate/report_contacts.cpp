@@ -164,7 +164,9 @@ ShownContacts replay_shown_contacts(const ReportScene& view, const Frames& frame
   scene.budget_us.reset();
   Picker picker(frames, scene.settings.delta_m);
   ReplayListeners listeners;
-  listeners.progress = [&](double done) { progress("contacts", done); };
+  if (progress) {
+    listeners.progress = [&](double done) { progress("contacts", done); };
+  }
   listeners.contacts = [&](std::size_t, std::span<const Contact> found) { picker.add(found); };
   const Recording recording = replay(scene, track_of_frames(view, frames), {}, listeners);
   ShownContacts out =

@@ -2,7 +2,6 @@
 // Reports from folders: files are told apart by their first lines, not by their names.
 #include <algorithm>
 #include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
@@ -65,41 +64,46 @@ std::vector<TickRow> read_ticks(const fs::path& file) {
   return std::move(*rows);
 }
 
-/// Exact lines first, then those of the Pareto front, then the others: the first of them are shown.
-std::vector<ReportLine> name_lines(const Found& found, const std::vector<SweepPoint>& settings) {
-  std::vector<std::pair<int, ReportLine>> ranked;
-  for (const fs::path& file : found.ticks) {
-    ReportLine line;
-    line.name = file.stem().string();
-    const auto point = std::find_if(settings.begin(), settings.end(),
-                                    [&](const SweepPoint& p) { return p.id == line.name; });
-    line.exact = point != settings.end() ? point->exact : line.name.starts_with("exact");
-    const bool front = point != settings.end() && point->pareto;
-    const int rank = line.exact ? 0 : front ? 1 : 2;
-    ranked.emplace_back(rank, std::move(line));
-  }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<ReportLine> lines;
-  for (auto& [rank, line] : ranked) lines.push_back(std::move(line));
-  return lines;
+/// A table of ticks before it is read.
+struct Table {
+  fs::path file;
+  std::string name;  ///< of its line
+  bool exact = false;
+  bool best = false;  ///< of the Pareto front
+};
+
+Table describe(const fs::path& file, const std::vector<SweepPoint>& settings) {
+  const std::string stem = file.stem().string();
+  const auto point = std::find_if(settings.begin(), settings.end(),
+                                  [&](const SweepPoint& p) { return p.id == stem; });
+  if (point == settings.end()) return {file, stem, stem.starts_with("exact"), false};
+  return {file, point->engine + ", " + point->words, point->exact, point->pareto};
 }
 
-void read_lines(const Found& found, ReportInput& out) {
-  out.lines = name_lines(found, out.settings);
-  if (out.lines.size() > kMaxReportLines) {
+/// Those that are shown: exact ones first, then those of the Pareto front, then the others.
+std::vector<Table> choose_tables(const Found& found, ReportInput& out) {
+  std::vector<Table> tables;
+  for (const fs::path& file : found.ticks) tables.push_back(describe(file, out.settings));
+  const auto rank = [](const Table& table) { return table.exact ? 0 : table.best ? 1 : 2; };
+  std::stable_sort(tables.begin(), tables.end(),
+                   [&](const Table& a, const Table& b) { return rank(a) < rank(b); });
+  if (tables.size() > kMaxReportLines) {
     out.notes.push_back("Profiles show " + std::to_string(kMaxReportLines) + " of " +
-                        std::to_string(out.lines.size()) +
+                        std::to_string(tables.size()) +
                         " tables: exact ones first, then the best trades.");
-    out.lines.resize(kMaxReportLines);
+    tables.resize(kMaxReportLines);
   }
-  for (ReportLine& line : out.lines) {
-    const auto file =
-        std::find_if(found.ticks.begin(), found.ticks.end(),
-                     [&](const fs::path& candidate) { return candidate.stem() == line.name; });
-    line.ticks = read_ticks(*file);
+  return tables;
+}
+
+void read_lines(const std::vector<Table>& tables, ReportInput& out) {
+  for (const Table& table : tables) {
+    ReportLine& line = out.lines.emplace_back();
+    line.name = table.name;
+    line.exact = table.exact;
+    line.ticks = read_ticks(table.file);
     if (line.ticks.size() != out.lines.front().ticks.size()) {
-      throw Failure(kRefused, "tables of different lengths in one folder", file->string(),
+      throw Failure(kRefused, "tables of different lengths in one folder", table.file.string(),
                     "give each motion a folder of its own");
     }
   }
@@ -133,14 +137,14 @@ std::string base_of(std::string name) {
   return name;
 }
 
-/// Contacts of a line that is not exact before those of one that is: they are chosen levels.
-void pair_contacts(const Found& found, const std::vector<ReportLine>& lines, ReportScene& out) {
+/// Contacts of a table that is not exact before those of one that is: they are chosen levels.
+void pair_contacts(const Found& found, const std::vector<Table>& tables, ReportScene& out) {
   for (const bool exact : {false, true}) {
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      if (lines[i].exact != exact) continue;
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      if (tables[i].exact != exact) continue;
       for (const fs::path& file : found.contacts) {
-        const bool only = found.contacts.size() == 1 && lines.size() == 1;
-        if (!only && base_of(file.stem()) != base_of(lines[i].name)) continue;
+        const bool only = found.contacts.size() == 1 && tables.size() == 1;
+        if (!only && base_of(file.stem()) != base_of(tables[i].file.stem())) continue;
         out.contacts = file;
         out.contacts_of = i;
         return;
@@ -149,8 +153,8 @@ void pair_contacts(const Found& found, const std::vector<ReportLine>& lines, Rep
   }
 }
 
-void read_view(const Found& found, const fs::path& folder, const ReportHints& hints,
-               ReportInput& out) {
+void read_view(const Found& found, const std::vector<Table>& tables, const fs::path& folder,
+               const ReportHints& hints, ReportInput& out) {
   const nlohmann::json json = about(folder);
   const fs::path scene = choose(hints.scene, json, "scene", found.scenes);
   const fs::path poses = choose(hints.poses, json, "poses", found.poses);
@@ -170,7 +174,7 @@ void read_view(const Found& found, const fs::path& folder, const ReportHints& hi
         std::to_string(view.track.ticks.size()) + " poses for " + std::to_string(ticks) + " ticks",
         poses.string(), "give the poses that were replayed");
   }
-  pair_contacts(found, out.lines, view);
+  pair_contacts(found, tables, view);
   out.view = std::move(view);
 }
 
@@ -192,9 +196,10 @@ ReportInput read_report_folder(const fs::path& folder, const ReportHints& hints)
     input.notes.emplace_back("No profiles and no 3D view: the folder has no tables of ticks.");
     return input;
   }
-  read_lines(found, input);
+  const std::vector<Table> tables = choose_tables(found, input);
+  read_lines(tables, input);
   try {
-    read_view(found, folder, hints, input);
+    read_view(found, tables, folder, hints, input);
   } catch (const std::runtime_error& e) {  // Failure and ConfigError
     if (!hints.scene.empty() || !hints.poses.empty()) throw;
     input.notes.push_back(std::string("No 3D view: ") + e.what() + ".");

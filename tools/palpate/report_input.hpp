@@ -20,7 +20,7 @@ enum class ReportKind { replay, sweep, run };
 
 /// One line of the contact profiles: the ticks of one replay or of the run.
 struct ReportLine {
-  std::string name;    ///< the table's file name without ".csv"
+  std::string name;    ///< the setting of a sweep, else the table's file name without ".csv"
   bool exact = false;  ///< the truth that the others are measured against
   std::vector<TickRow> ticks;
 };

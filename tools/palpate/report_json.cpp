@@ -81,11 +81,15 @@ Json latency_json(const ReportInput& input) {
   return {{"from_us", packed(bins.from_us)}, {"bins_per_octave", kBinsPerOctave}, {"sets", sets}};
 }
 
-/// Half the least error that is not zero: where a logarithmic axis ends and zeros are drawn.
+/// Errors below this, a hundredth of a per cent, are drawn as none: a logarithmic axis would give
+/// most of its length to the rounding of exact queries.
+constexpr double kLeastDrawnNrmse = 1e-4;
+
+/// Half the least error that is drawn as it is: where none is drawn.
 double lower_edge(const std::vector<SweepPoint>& settings) {
   double least = 2.0;
   for (const SweepPoint& p : settings) {
-    if (p.force_nrmse > 0) least = std::min(least, p.force_nrmse);
+    if (p.force_nrmse >= kLeastDrawnNrmse) least = std::min(least, p.force_nrmse);
   }
   return least / 2;
 }
@@ -103,7 +107,7 @@ Json setting_json(const SweepPoint& p, double lower_edge) {
           {"queries_mean", number(p.queries_mean)},
           {"truncated", number(p.truncated)},
           {"force_nrmse", number(p.force_nrmse)},
-          {"drawn_nrmse", number(p.force_nrmse > 0 ? p.force_nrmse : p.force_nrmse + lower_edge)},
+          {"drawn_nrmse", number(p.force_nrmse < kLeastDrawnNrmse ? lower_edge : p.force_nrmse)},
           {"torque_nrmse", number(p.torque_nrmse)},
           {"noticeable", number(p.noticeable)},
           {"bound_m", number(p.bound_m)},

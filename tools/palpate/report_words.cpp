@@ -72,7 +72,8 @@ Words sweep_words(const std::vector<SweepPoint>& points) {
   for (const double nrmse : {0.01, 0.05, 0.2}) {
     const SweepPoint* p = fastest_within(points, nrmse);
     if (p == nullptr) {
-      out.push_back("No setting keeps the error of the force within " + percent(nrmse) + ".");
+      out.push_back("No setting but the exact ones keeps the error of the force within " +
+                    percent(nrmse) + ".");
     } else {
       out.push_back("Fastest with an error of the force within " + percent(nrmse) + ": " +
                     full_name(*p) + ", error " + percent(p->force_nrmse) + ", " + trade(*p) + ".");

@@ -28,8 +28,14 @@ function(run_npm out_failed)
     endif()
     set(command "${NODE}" "${folder}/package/bin/npm-cli.js")
   endif()
+  # node trusts its own list alone; a machine behind a proxy has one more in its own.
+  set(system_certificates /etc/ssl/certs/ca-certificates.crt)
+  if(NOT DEFINED ENV{NODE_EXTRA_CA_CERTS} AND EXISTS "${system_certificates}")
+    set(ENV{NODE_EXTRA_CA_CERTS} "${system_certificates}")
+  endif()
   # No package has a say in the build: esbuild's program is in a package of its own.
-  execute_process(COMMAND ${command} ci --ignore-scripts --no-audit --no-fund --loglevel=error --fetch-retries=1 --fetch-timeout=30000
+  execute_process(COMMAND ${command} ci --ignore-scripts --no-audit --no-fund --loglevel=error --fetch-retries=1
+      --fetch-retry-mintimeout=2000 --fetch-timeout=30000
     WORKING_DIRECTORY "${PACKAGES}" RESULT_VARIABLE result OUTPUT_QUIET ERROR_VARIABLE said)
   if(NOT result EQUAL 0)
     string(REGEX REPLACE "\n.*" "" first "${said}")

@@ -41,11 +41,11 @@ function seriesOptions(series, index) {
   return {
     label: series.name,
     stroke: colour,
-    width: points ? 0 : series.width ?? 1.5,
+    width: series.width ?? 1.5,
     dash: series.dash,
     spanGaps: series.kind === 'joined',
     paths: points ? () => null : series.kind === 'steps' ? uPlot.paths.stepped({ align: 1 }) : undefined,
-    points: { show: points, size: series.size ?? 9, fill: colour },
+    points: { show: points, size: series.size ?? 9, width: 2, fill: series.hollow ? () => style('--card') : colour },
     value: (_, v) => number(v),
   };
 }
@@ -69,7 +69,7 @@ function joined(series, logX, logY) {
 }
 
 /// Adds a plot to `host`.
-/// series: [{name, values, x?, kind: 'line' | 'joined' | 'points' | 'steps', colour?}]; with `x` of
+/// series: [{name, values, x?, kind: 'line' | 'joined' | 'points' | 'steps', colour?, hollow?, size?, dash?, width?}]; with `x` of
 /// their own, or all over the common x.
 /// Returns {show(x)}: moves the line that marks the page's frame.
 export function addPlot(host, { title, x, series, xLabel, yLabel, logX, logY, height = 240, onClick, onPoint }) {

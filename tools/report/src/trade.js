@@ -73,6 +73,8 @@ export function showTrade(section, settings) {
     series.push({
       name,
       kind: 'points',
+      colour: members[0].engine === 'levels' ? 0 : 1,
+      hollow: members[0].exact,
       x: members.map((s) => s.median_us),
       values: members.map((s) => 100 * s.drawn_nrmse),
     });
