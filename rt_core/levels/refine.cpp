@@ -114,8 +114,7 @@ void measure_bound(Work& work, std::uint32_t index) noexcept {
   if (!work.is_near(node)) {
     node.contact = 0;
   } else if (surface.stops) {
-    stop_on_surface(work, node, surface);
-    stop(work, index);
+    stop_on_surface(work, index, surface.contact);
   } else {
     const bool all = work.rules.exact;
     allow(node, a.children != 0 && (all || is_free(a)), b.children != 0 && (all || is_free(b)));
@@ -135,11 +134,10 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
     return;
   }
   const bool refines = missing.refine_a || missing.refine_b;
-  if (refines && work.rules.stop_on_surface && !work.out_of_budget()) {
+  if (refines && may_stop_on_surface(work, node) && !work.out_of_budget()) {
     const SurfaceStop surface = probe_surface(work, node);
     if (surface.stops) {
-      stop_on_surface(work, node, surface);
-      stop(work, index);
+      stop_on_surface(work, index, surface.contact);
       return;
     }
   }

@@ -95,7 +95,9 @@ double residual(const PairState& pair, const Node& node) noexcept {
          pair.scale_b * static_cast<double>(piece_b(pair, node).culling_residual);
 }
 
-bool may_stop(const Work& work, const Node& node) noexcept {
+}  // namespace
+
+bool may_stop_on_surface(const Work& work, const Node& node) noexcept {
   const PairState& pair = work.pair_of(node);
   return work.rules.stop_on_surface && !work.rules.exact && work.rules.bounds == Bounds::tight &&
          spans_original(*pair.image_a, piece_a(pair, node)) &&
@@ -103,13 +105,12 @@ bool may_stop(const Work& work, const Node& node) noexcept {
          residual(pair, node) <= kStopResidual * pair.delta;
 }
 
-}  // namespace
-
 SurfaceStop probe_surface(Work& work, Node& node) noexcept {
   const PairState& pair = work.pair_of(node);
   const convex::Distance d = work.probe.cull(pair, node);
   SurfaceStop out;
-  if (!may_stop(work, node) || d.state != convex::State::separated || d.distance >= pair.delta) {
+  if (!may_stop_on_surface(work, node) || d.state != convex::State::separated ||
+      d.distance >= pair.delta) {
     return out;
   }
   const Piece& a = piece_a(pair, node);
@@ -127,12 +128,10 @@ SurfaceStop probe_surface(Work& work, Node& node) noexcept {
   return out;
 }
 
-void stop_on_surface(Work& work, Node& node, const SurfaceStop& surface) noexcept {
-  const PairState& pair = work.pair_of(node);
-  keep(pair, piece_a(pair, node), piece_b(pair, node), surface.contact, node);
+void keep_on_surface(const PairState& pair, Node& node, const LeafContact& contact) noexcept {
+  keep(pair, piece_a(pair, node), piece_b(pair, node), contact, node);
   node.slack = 0;  // the witnesses are on the original surfaces: nothing is missing
   node.s_star = node.excess = 0;
-  work.add_contact(node, surface.contact);
 }
 
 }  // namespace palpate::levels

@@ -2,6 +2,7 @@
 #include "rt_core/levels/upkeep.hpp"
 
 #include "rt_core/levels/interpolate.hpp"
+#include "rt_core/levels/surface_stop.hpp"
 
 namespace palpate::levels {
 namespace {
@@ -17,11 +18,41 @@ std::uint64_t spare_queries(const Work& work) noexcept {
   return work.probe.queries() + kSpareQueries + work.probe.queries() / kSpareQueryShare;
 }
 
-bool children_rest(const Work& work, std::uint32_t parent) noexcept {
-  const TestTree& tree = work.tree;
-  for (std::uint32_t c = tree[parent].first_child; c != kNone; c = tree[c].next_sibling) {
-    if (!tree.in_front(c) || work.is_near(tree[c])) return false;
+bool children_in_front(const TestTree& tree, const Node& parent) noexcept {
+  for (std::uint32_t c = parent.first_child; c != kNone; c = tree[c].next_sibling) {
+    if (!tree.in_front(c)) return false;
   }
+  return true;
+}
+
+bool children_rest(const Work& work, const Node& parent) noexcept {
+  const TestTree& tree = work.tree;
+  for (std::uint32_t c = parent.first_child; c != kNone; c = tree[c].next_sibling) {
+    if (work.is_near(tree[c])) return false;
+  }
+  return true;
+}
+
+/// Whether the parent gives no contact, nor does anything below it.
+bool raise_at_rest(Work& work, std::uint32_t parent) noexcept {
+  Node& node = work.tree[parent];
+  if (!children_rest(work, node) || (work.is_near(node) && !work.rests(node))) return false;
+  work.tree.collapse(parent);
+  node.contact = 0;
+  clear(node, kOfThisTick);
+  return true;
+}
+
+/// The contacts below it are this tick's; from the next one on there is its own.
+bool raise_to_surface(Work& work, std::uint32_t parent) noexcept {
+  Node& node = work.tree[parent];
+  if (!may_stop_on_surface(work, node) || !work.is_near(node)) return false;
+  const SurfaceStop surface = probe_surface(work, node);
+  if (!surface.stops) return false;
+  work.tree.collapse(parent);
+  keep_on_surface(work.pair_of(node), node, surface.contact);
+  clear(node, kOfThisTick);
+  work.stopped.add(node, parent);
   return true;
 }
 
@@ -47,14 +78,9 @@ void raise(Work& work) noexcept {
     if (next >= tree.front().size()) next = 0;
     const std::uint32_t parent = tree[tree.front()[next++]].parent;
     if (parent == kNone) continue;
-    Node& node = tree[parent];
-    if (children_rest(work, parent) && (!work.is_near(node) || work.rests(node))) {
-      tree.collapse(parent);
-      node.contact = 0;
-      clear(node, kOfThisTick);
-    } else if (!work.out_of_budget()) {
-      renew_detail(work, parent);
-    }
+    const bool raised = children_in_front(tree, tree[parent]) &&
+                        (raise_at_rest(work, parent) || raise_to_surface(work, parent));
+    if (!raised && !work.out_of_budget()) renew_detail(work, parent);
   }
 }
 
