@@ -77,6 +77,13 @@ void split(Work& work, std::uint32_t index) noexcept {
 
 void stop(Work& work, std::uint32_t index) noexcept { work.stopped.add(work.tree[index], index); }
 
+void stop_on_surface(Work& work, std::uint32_t index, const LeafContact& contact) noexcept {
+  Node& node = work.tree[index];
+  keep_on_surface(work.pair_of(node), node, contact);
+  work.add_contact(node, contact);
+  stop(work, index);
+}
+
 /// Keeps the contact of two pieces in the node, and reports it where refinement stops here.
 void touch(Work& work, Node& node, const convex::Distance& d, bool stops) noexcept {
   const PairState& pair = work.pair_of(node);
