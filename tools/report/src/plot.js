@@ -12,18 +12,24 @@ matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
   for (const rebuild of rebuilds) rebuild();
 });
 
-const isPowerOfTen = (v) => Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-6;
+/// Of a logarithmic axis's places those that can have a name without running into each other: 1, 2
+/// and 5 of each power of ten, or over more than two and a half powers the 1 alone.
+function named(splits) {
+  const shown = splits.filter((v) => v !== null && v > 0);
+  const leading = Math.max(...shown) > 300 * Math.min(...shown) ? [1] : [1, 2, 5];
+  const digit = (v) => Math.round(v / 10 ** Math.floor(Math.log10(v) + 1e-9));
+  return splits.map((v) => (v !== null && leading.includes(digit(v)) ? v : null));
+}
 
 function axis(label, log, size) {
   const line = { stroke: () => style('--line'), width: 1 };
-  // Powers of ten alone, on a logarithmic axis: what lies between would run into each other.
-  const powers = log ? { filter: (_, splits) => splits.map((v) => (v !== null && isPowerOfTen(v) ? v : null)) } : {};
+  const filter = log ? { filter: (_, splits) => named(splits) } : {};
   return {
     label,
     stroke: () => style('--quiet'),
-    grid: { ...line, ...powers },
-    ticks: { ...line, ...powers, size: 5 },
-    ...powers,
+    grid: { ...line, ...filter },
+    ticks: { ...line, ...filter, size: 5 },
+    ...filter,
     font: '12px system-ui, sans-serif',
     labelFont: '13px system-ui, sans-serif',
     labelSize: 20,
