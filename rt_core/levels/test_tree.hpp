@@ -69,10 +69,13 @@ inline void clear(Node& node, std::uint8_t flags) noexcept {
 /// without a walk over the front.
 class TestTree {
  public:
-  TestTree() = default;
+  /// Tells where the nodes are, or are now: their values stay.
   /// @param nodes, front, blending  of equal length: the capacity
-  TestTree(std::span<Node> nodes, std::span<std::uint32_t> front,
-           std::span<std::uint32_t> blending) noexcept;
+  void attach(std::span<Node> nodes, std::span<std::uint32_t> front,
+              std::span<std::uint32_t> blending) noexcept;
+
+  /// Empties the pool.
+  void clear() noexcept;
 
   /// A new tree of one node. Returns its index, or kNone where the pool is empty.
   std::uint32_t add_root(std::uint16_t pair, std::uint32_t piece_a, std::uint32_t piece_b) noexcept;
