@@ -83,7 +83,8 @@ struct Found {
 };
 
 Found find_by_levels(Engine& engine, Meter& meter) noexcept {
-  const levels::QueryResult found = levels::query(engine.levels, rules_of(engine.settings), meter);
+  const levels::QueryResult found =
+      levels::query(engine.levels, rules_of(engine.settings), meter, engine.tally);
   if (found.queries > 0) {
     engine.levels.query_ns = smoothed(engine.levels.query_ns, meter.refined_ns() / found.queries);
   }
@@ -92,7 +93,9 @@ Found find_by_levels(Engine& engine, Meter& meter) noexcept {
 }
 
 bool limited(const Budget& budget) noexcept {
-  return budget.clock_ns != nullptr || budget.units != Budget{}.units;
+  const bool in_time =
+      budget.clock_ns != nullptr && budget.deadline_ns != std::numeric_limits<std::uint64_t>::max();
+  return in_time || budget.units != Budget{}.units;
 }
 
 Found find_by_regions(Engine& engine, const Budget& budget, Meter& meter) noexcept {
@@ -103,6 +106,7 @@ Found find_by_regions(Engine& engine, const Budget& budget, Meter& meter) noexce
     demand.tolerance_m = s.force_tolerance_N / s.stiffness_N_per_m;
   }
   const regions::QueryResult found = regions::query(engine.regions, demand, meter);
+  engine.tally.lap(Stage::refine, meter);
   Found out{found.contacts, found.min_distance_m, found.near_regions, found.queries,
             certify(found, found.min_distance_m, s.delta_m, largest_unit_m(engine.states))};
   out.certificate.force_bound_N = s.stiffness_N_per_m * found.open_m;
@@ -123,6 +127,7 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
     levels::move(pair, engine.poses[pair.body_a], engine.poses[pair.body_b]);
   }
   Meter meter(budget, engine.tail_ns + engine.tail_ns / 4);
+  engine.tally.begin_tick();
   const Found found = settings.engine == EngineKind::levels
                           ? find_by_levels(engine, meter)
                           : find_by_regions(engine, budget, meter);
@@ -142,7 +147,13 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
   out.certificate.units_used = meter.used();
   out.certificate.truncated_by_memory |= penalty.places_full;
   engine.tail_ns = smoothed(engine.tail_ns, meter.tail_ns());
+  engine.tally.lap(Stage::force, meter);
+  engine.tally.count([&](auto& counters) { raise_mark(counters.most_contacts, found.contacts); });
   return Status::ok;
 }
+
+const Counters* counters(const Engine& engine) noexcept { return engine.tally.counters(); }
+
+void reset_counters(Engine& engine) noexcept { engine.tally.reset(); }
 
 }  // namespace palpate

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "rt_core/base/tally.hpp"
 #include "rt_core/force/penalty.hpp"
 #include "rt_core/levels/levels_engine.hpp"
 #include "rt_core/palpate_rt.hpp"
@@ -25,6 +26,7 @@ class Engine {
   regions::QueryMemory regions;
   std::span<Contact> contacts;
   force::Workspace force;
+  [[no_unique_address]] Tally tally;
   std::uint64_t tail_ns = 0;  // what ticks take from the end of refinement to their own, smoothed
 };
 

@@ -104,6 +104,7 @@ class TestTree {
   [[nodiscard]] Node& operator[](std::uint32_t node) noexcept { return nodes_[node]; }
   [[nodiscard]] const Node& operator[](std::uint32_t node) const noexcept { return nodes_[node]; }
   [[nodiscard]] std::uint32_t free_nodes() const noexcept { return free_count_; }
+  [[nodiscard]] std::size_t used_nodes() const noexcept { return nodes_.size() - free_count_; }
 
  private:
   std::uint32_t take() noexcept;
