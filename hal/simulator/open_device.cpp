@@ -14,18 +14,7 @@ namespace {
 using namespace protocol;
 
 constexpr double kMicro = 1e-6;
-
-/// Configuration with one interface, the DFU one, in two alternate settings.
-constexpr std::array<std::uint8_t, 36> kUpdateDescriptors{
-    // clang-format off
-    9, 2, 36, 0, 1, 1, 0, 0x80, 50,
-    9, 4, 0, 0, 0, flash::kDfuClass, flash::kDfuSubclass, flash::kDfuModeProtocol, 0,
-    9, 4, 0, 1, 0, flash::kDfuClass, flash::kDfuSubclass, flash::kDfuModeProtocol, 0,
-    9, flash::kFunctionalDescriptorType,
-    flash::kCanDownload | flash::kCanUpload | flash::kManifestationTolerant,
-    0, 0, flash::DfuDevice::kTransferBytes & 0xff, flash::DfuDevice::kTransferBytes >> 8, 0x10, 1,
-    // clang-format on
-};
+constexpr std::uint16_t kUpdateInterface = 1;
 
 std::int32_t nanometres(double m) { return static_cast<std::int32_t>(std::lround(1e9 * m)); }
 std::int32_t quaternion_unit(double c) {
@@ -55,6 +44,7 @@ protocol::Capabilities OpenDeviceOptions::default_capabilities() noexcept {
 
 OpenDevice::OpenDevice(OpenDeviceOptions options)
     : options_(std::move(options)),
+      descriptors_(open_device_descriptors(options_.serial, options_.flash != nullptr)),
       hand_(options_.hand, 1.0 / options_.capabilities.rate_Hz),
       end_(options_.capabilities),
       period_ns_(1'000'000'000 / options_.capabilities.rate_Hz) {
@@ -111,16 +101,8 @@ ImageIdentity OpenDevice::identity() const {
 IoResult OpenDevice::control_in(const ControlRequest& request, std::span<std::byte> out) {
   if (request.type == flash::kDfuIn) return update(request, {}, out);
   if (request.type == kVendorIn) return vendor_in(request, out);
-  constexpr ControlRequest kGetConfiguration{0x80, 0x06, 0x0200, 0};
-  const bool is_configuration = request.type == kGetConfiguration.type &&
-                                request.request == kGetConfiguration.request &&
-                                request.value == kGetConfiguration.value;
-  if (!is_configuration || !dfu_) return {IoStatus::stalled};
-  const std::size_t length = std::min(out.size(), kUpdateDescriptors.size());
-  std::transform(kUpdateDescriptors.begin(),
-                 kUpdateDescriptors.begin() + static_cast<std::ptrdiff_t>(length), out.begin(),
-                 [](std::uint8_t b) { return std::byte{b}; });
-  return {IoStatus::ok, length};
+  if (is_standard(request)) return standard_in(descriptors_, request, out);
+  return {IoStatus::stalled};
 }
 
 IoResult OpenDevice::vendor_in(const ControlRequest& request, std::span<std::byte> out) {
@@ -138,13 +120,13 @@ IoResult OpenDevice::vendor_in(const ControlRequest& request, std::span<std::byt
 IoResult OpenDevice::control_out(const ControlRequest& request, std::span<const std::byte> data) {
   if (request.type == flash::kDfuOut) return update(request, data, {});
   if (request.type == kVendorOut) return vendor_out(request);
-  constexpr std::uint8_t kSetInterface = 0x0b;
-  if (request.type != 0x01 || request.request != kSetInterface || !dfu_ ||
-      request.value >= flash::kSlots) {
-    return {IoStatus::stalled};
+  constexpr ControlRequest kChooseSlot{0x01, 0x0b, 0, kUpdateInterface};
+  if (request.type == kChooseSlot.type && request.request == kChooseSlot.request &&
+      request.index == kChooseSlot.index && dfu_ && request.value < flash::kSlots) {
+    dfu_->select(static_cast<std::uint8_t>(request.value));
+    return {};
   }
-  dfu_->select(static_cast<std::uint8_t>(request.value));
-  return {};
+  return is_standard(request) ? standard_out(request) : IoResult{IoStatus::stalled};
 }
 
 IoResult OpenDevice::vendor_out(const ControlRequest& request) {
