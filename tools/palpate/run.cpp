@@ -23,6 +23,7 @@
 #include "tools/realtime/engine_query.hpp"
 #include "tools/realtime/loop.hpp"
 #include "tools/realtime/realtime_thread.hpp"
+#include "tools/realtime/scene_hand.hpp"
 #include "tools/realtime/trace_writer.hpp"
 
 namespace palpate::cli {
@@ -74,20 +75,6 @@ class StopOnSignal {
   struct sigaction old_terminate_ {};
 };
 
-hal::mock::HandParameters hand_of(const config::Scene& scene) {
-  const config::MockHand& from = scene.hand;
-  hal::mock::HandParameters hand;
-  hand.mass_kg = from.mass_kg;
-  hand.inertia_kg_m2 = from.inertia_kg_m2;
-  hand.grip_N_per_m = from.grip_N_per_m;
-  hand.grip_Nm_per_rad = from.grip_Nm_per_rad;
-  hand.damping_N_s_per_m = from.damping_N_s_per_m;
-  hand.damping_Nm_s_per_rad = from.damping_Nm_s_per_rad;
-  hand.rest = scene.bodies[scene.tool].pose;
-  for (const config::Waypoint& w : from.path) hand.script.push_back({w.t_s, w.pose});
-  return hand;
-}
-
 std::unique_ptr<hal::Device> make_device(const RunOptions& options, const config::Scene& scene,
                                          double rate_Hz, hal::Clock& clock) {
   const int priority = options.realtime.fifo_priority;
@@ -99,7 +86,7 @@ std::unique_ptr<hal::Device> make_device(const RunOptions& options, const config
   mock.rate_Hz = kMockReadingsPerTick * rate_Hz;
   // It stands in for hardware, which the loop does not keep waiting either.
   mock.fifo_priority = priority == 0 ? 0 : std::min(priority + 1, realtime::kMaxFifoPriority);
-  return std::make_unique<hal::mock::MockDevice>(hand_of(scene), mock);
+  return std::make_unique<hal::mock::MockDevice>(realtime::hand_of(scene), mock);
 }
 
 realtime::LoopSettings loop_settings(const RunOptions& options, const config::Scene& scene,
