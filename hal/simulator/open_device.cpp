@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "rt_core/image/view.hpp"
+#include "rt_core/palpate_rt.hpp"
 
 namespace palpate::hal::simulator {
 namespace {
@@ -22,6 +23,13 @@ std::int32_t quaternion_unit(double c) {
 }
 Vec3d from_micro(const std::array<std::int32_t, 3>& v) {
   return {kMicro * v[0], kMicro * v[1], kMicro * v[2]};
+}
+
+/// Of an engine for two bodies of an image, with the default limits.
+std::size_t engine_bytes(const ImageView& image) noexcept {
+  const std::array bodies{image, image};
+  const std::array pairs{BodyPair{.a = 0, .b = 1}};
+  return required_bytes({.bodies = bodies, .pairs = pairs, .tool = 0}, Limits{});
 }
 
 IoResult give(const Packet& packet, std::span<std::byte> out) {
@@ -80,6 +88,14 @@ void OpenDevice::period(std::uint64_t now_ns) {
   end_.stamp(state);
   // One that was not fetched is replaced: the host gets the newest.
   if (!silent_) ready_ = encode(state);
+}
+
+flash::SlotRules OpenDevice::rules() const noexcept {
+  flash::SlotRules rules;
+  rules.key = options_.key;
+  rules.engine_memory_bytes = options_.capabilities.engine_memory_bytes;
+  if (rules.engine_memory_bytes > 0) rules.engine_bytes = engine_bytes;
+  return rules;
 }
 
 ImageIdentity OpenDevice::identity() const {
@@ -167,7 +183,7 @@ void OpenDevice::bus_reset() {
 void OpenDevice::restart() {
   bus_reset();
   if (options_.flash == nullptr) return;
-  slots_.emplace(*options_.flash, options_.layout);
+  slots_.emplace(*options_.flash, options_.layout, rules());
   dfu_.emplace(*slots_);
   const bool holds_image = slots_->start() != flash::kNone && slots_->confirm();
   end_.set_health(holds_image ? kHealthy : kNoImage);

@@ -21,6 +21,8 @@ struct OpenDeviceOptions {
   /// Its flash, which outlives it; null: it holds no images.
   flash::FlashMemory* flash = nullptr;
   flash::SlotLayout layout;
+  /// The public key that images must be signed for; absent: none
+  std::optional<signature::PublicKey> key;
   std::string serial = "SIM0001";
   /// stuck and drift, from its first period on
   mock::Faults sensor_faults;
@@ -59,6 +61,7 @@ class OpenDevice : public SimulatedDevice {
 
  private:
   void period(std::uint64_t now_ns);
+  [[nodiscard]] flash::SlotRules rules() const noexcept;
   [[nodiscard]] protocol::ImageIdentity identity() const;
   IoResult vendor_in(const ControlRequest& request, std::span<std::byte> out);
   IoResult vendor_out(const ControlRequest& request);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hal/protocol/host_driver.hpp"
+#include "hal/text_table.hpp"
 #include "hal/usb/interfaces.hpp"
 #include "hal/usb/libusb_transport.hpp"
 
@@ -103,15 +104,9 @@ FoundDevice describe(Kind kind, const Context& context, const Candidate& candida
 }  // namespace
 
 std::string_view name(Kind kind) noexcept {
-  switch (kind) {
-    case Kind::open_protocol:
-      return "usb";
-    case Kind::falcon:
-      return "falcon";
-    case Kind::update:
-      return "update";
-  }
-  return "unknown";
+  return text_in<Kind>(
+      {{Kind::open_protocol, "usb"}, {Kind::falcon, "falcon"}, {Kind::update, "update"}}, kind,
+      "unknown");
 }
 
 std::vector<FoundDevice> find_devices() {

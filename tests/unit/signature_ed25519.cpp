@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "../support/signer.hpp"
 #include "hal/signature/field.hpp"
 #include "hal/signature/sha512.hpp"
 
@@ -17,6 +18,9 @@ namespace palpate::hal::signature {
 namespace {
 
 using Bytes = std::vector<std::byte>;
+using test::raw;
+using test::Signer;
+using test::writable;
 
 Bytes from_hex(const std::string& text) {
   Bytes bytes;
@@ -32,13 +36,6 @@ Array array_of(const Bytes& bytes) {
   EXPECT_EQ(bytes.size(), out.size());
   std::copy_n(bytes.begin(), std::min(bytes.size(), out.size()), out.begin());
   return out;
-}
-
-unsigned char* writable(std::span<std::byte> bytes) {
-  return reinterpret_cast<unsigned char*>(bytes.data());
-}
-const unsigned char* raw(std::span<const std::byte> bytes) {
-  return reinterpret_cast<const unsigned char*>(bytes.data());
 }
 
 // RFC 8032, 7.1, TEST 1, 2, 3 and SHA(abc).
@@ -85,21 +82,6 @@ TEST(Sha512, agrees_with_another_implementation_at_every_length_around_a_block) 
     ASSERT_EQ(hash.finish(), right) << length;
   }
 }
-
-/// A pair of keys of libsodium's, and what it signs.
-struct Signer {
-  explicit Signer(unsigned char seed_byte) {
-    const std::vector<unsigned char> seed(crypto_sign_SEEDBYTES, seed_byte);
-    crypto_sign_seed_keypair(writable(key), secret.data(), seed.data());
-  }
-  [[nodiscard]] Signature sign(const Bytes& message) const {
-    Signature out{};
-    crypto_sign_detached(writable(out), nullptr, raw(message), message.size(), secret.data());
-    return out;
-  }
-  PublicKey key{};
-  std::vector<unsigned char> secret = std::vector<unsigned char>(crypto_sign_SECRETKEYBYTES);
-};
 
 TEST(Ed25519, signatures_of_another_implementation_are_accepted) {
   std::mt19937 random(2);
