@@ -3,7 +3,8 @@
 // /dev/bus/usb/001/002 reaches the first one, 003 the second; that there are such devices must come
 // from elsewhere (umockdev). PALPATE_SHIM_DEVICES has a word for each, with colons between: the
 // file of its flash, or "denied" (nobody may open it), "busy" (another program has it), "version"
-// (it speaks another version of the protocol).
+// (it speaks another version of the protocol). PALPATE_SHIM_KEY may name a file with the 32 bytes
+// of the public key that images must be signed for.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/ioctl.h>
@@ -13,6 +14,7 @@
 #include <cstdarg>
 #include <cstdlib>
 #include <deque>
+#include <fstream>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -40,6 +42,15 @@ class Foreigner final : public simulator::OpenDevice {
   }
 };
 
+/// The 32 bytes of the file named by PALPATE_SHIM_KEY; absent where none is named.
+std::optional<signature::PublicKey> key() {
+  const char* file = std::getenv("PALPATE_SHIM_KEY");
+  if (file == nullptr) return std::nullopt;
+  signature::PublicKey key{};
+  std::ifstream(file, std::ios::binary).read(reinterpret_cast<char*>(key.data()), key.size());
+  return key;
+}
+
 struct Shim {
   Shim(const std::string& flash_file, const std::string& serial)
       : flash(flash_file, layout), model(options(serial)), usbfs(model) {}
@@ -48,6 +59,7 @@ struct Shim {
     simulator::OpenDeviceOptions out;
     out.flash = &flash;
     out.layout = layout;
+    out.key = key();
     out.serial = serial;
     // The hand presses 5 mm towards the scene's centre along x and back, each second.
     out.hand.rest.position_m = {0.0102, 0, 0};

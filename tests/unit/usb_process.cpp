@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -61,9 +62,11 @@ class UsbProcess : public testing::Test {
   }
   /// A program with the devices plugged in; what is in a device's flash stays from one to the next.
   [[nodiscard]] test::Outcome with_device(std::vector<std::string> command) const {
-    command.insert(command.begin(), {UMOCKDEV_RUN, "-d", path("device.umockdev"), "--",
-                                     "/usr/bin/env", "PALPATE_SHIM_DEVICES=" + devices_,
-                                     "LD_PRELOAD=" PALPATE_SHIM " libumockdev-preload.so.0"});
+    command.insert(command.begin(),
+                   {UMOCKDEV_RUN, "-d", path("device.umockdev"), "--", "/usr/bin/env",
+                    "PALPATE_SHIM_DEVICES=" + devices_,
+                    key_file_.empty() ? "PALPATE_NO_KEY=" : "PALPATE_SHIM_KEY=" + key_file_,
+                    "LD_PRELOAD=" PALPATE_SHIM " libumockdev-preload.so.0"});
     return test::run(std::move(command));
   }
   [[nodiscard]] test::Outcome palpate(std::vector<std::string> arguments) const {
@@ -83,6 +86,7 @@ class UsbProcess : public testing::Test {
   }
   test::TemporaryFolder folder_;
   std::string devices_;
+  std::string key_file_;
 };
 
 TEST_F(UsbProcess, device_is_listed_as_ready) {
@@ -186,6 +190,48 @@ TEST_F(UsbProcess, dfu_util_refuses_a_file_for_another_product) {
             std::string::npos);
 }
 
+#ifdef PALPATE_SODIUM
+TEST_F(UsbProcess, device_with_a_key_takes_signed_images_that_are_not_older) {
+  const test::Outcome made =
+      test::run({PALPATE_EXECUTABLE, "key", path("secret.pem"), "--new", "--c", path("key.h")});
+  ASSERT_EQ(made.status, 0) << made.err;
+  // What firmware gets: "0x12, 0x34, ...".
+  std::istringstream source(test::read_file(path("key.h")));
+  std::string key;
+  for (std::string word; source >> word;) {
+    if (word.rfind("0x", 0) == 0) key += static_cast<char>(std::stoi(word, nullptr, 16));
+  }
+  ASSERT_EQ(key.size(), 32u);
+  folder_.write("key", key);
+  key_file_ = path("key");
+
+  const auto flash = [&](const char* image, std::vector<std::string> more) {
+    std::vector<std::string> arguments{"flash", path(image), "--device", "usb", "--verify"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return palpate(arguments);
+  };
+  const test::Outcome unsigned_one = flash("one.palp", {});
+  EXPECT_EQ(unsigned_one.status, 4);
+  EXPECT_NE(unsigned_one.err.find("not signed with the device's key"), std::string::npos)
+      << unsigned_one.err;
+  const test::Outcome first = flash("one.palp", {"--sign", path("secret.pem"), "--counter", "5"});
+  EXPECT_EQ(first.status, 0) << first.err;
+  const test::Outcome older = flash("two.palp", {"--sign", path("secret.pem"), "--counter", "4"});
+  EXPECT_EQ(older.status, 4);
+  EXPECT_NE(older.err.find("older than what the device has confirmed"), std::string::npos)
+      << older.err;
+
+  // And by the other program, from a signed DFU file.
+  ASSERT_EQ(test::run({PALPATE_EXECUTABLE, "emit", path("two.palp"), "--as", "dfu", "--sign",
+                       path("secret.pem"), "--counter", "6", "-o", path("two.dfu")})
+                .status,
+            0);
+  ASSERT_EQ(dfu_util({"-a", "1", "-D", path("two.dfu")}).status, 0);
+  const test::Outcome used = flash("two.palp", {"--sign", path("secret.pem"), "--counter", "6"});
+  EXPECT_EQ(used.out, "The device already uses this image, from slot B.\n") << used.err;
+}
+#endif
+
 constexpr const char* kScene = R"([engine]
 delta_m = 0.0005
 budget_us = 400.0
@@ -205,6 +251,23 @@ role = "fixed"
 
 // How late a tick is depends on the machine, so 0 and 5 are both right; at 50 Hz it may stand still
 // for 40 ms before the device gives the loop up.
+TEST_F(UsbProcess, run_refuses_a_device_with_an_image_of_another_scene) {
+  const auto cube =
+      test::seal(test::parts_of({test::box_part({0, 0, 0}, {0.5f, 0.5f, 0.5f})}, 0.01));
+  folder_.write("cube.palp", {reinterpret_cast<const char*>(cube.data()), cube.size()});
+  folder_.write("scene.toml", kScene);
+  ASSERT_EQ(palpate({"flash", path("one.palp"), "--device", "usb"}).status, 0);
+  const auto run = [&] {
+    return palpate({"run", path("scene.toml"), "--device", "usb", "--seconds", "0.1", "--rate",
+                    "50", "--quiet"});
+  };
+  const test::Outcome refused = run();
+  EXPECT_EQ(refused.status, 4);
+  EXPECT_NE(refused.err.find("device failed at image identity"), std::string::npos) << refused.err;
+  ASSERT_EQ(palpate({"flash", path("cube.palp"), "--device", "usb"}).status, 0);
+  EXPECT_NE(run().status, 4);
+}
+
 TEST_F(UsbProcess, run_feels_the_contact_through_the_device) {
   const auto cube =
       test::seal(test::parts_of({test::box_part({0, 0, 0}, {0.5f, 0.5f, 0.5f})}, 0.01));

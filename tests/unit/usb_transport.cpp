@@ -212,6 +212,27 @@ TEST(Libusb, unplugging_with_out_transfers_under_way_is_a_loss) {
   rig.device->stop();
 }
 
+// The plug is pulled at each transfer of a device's life: opening, starting, exchange, stopping.
+TEST(Libusb, unplugging_before_any_transfer_is_a_problem_or_a_loss_and_never_a_hang) {
+  int lost_while_streaming = 0;
+  for (int submissions = 0; submissions < 40; ++submissions) {
+    UsbRig rig(patient());
+    rig.usbfs.unplug_after(submissions);
+    if (const auto problem = rig.begin()) {
+      EXPECT_FALSE(problem->phase.empty()) << submissions;
+      EXPECT_FALSE(problem->mend.empty()) << submissions;
+    } else {
+      rig.run(3000 * kMs, [&] { return rig.has_faults(kDeviceLost); });
+      EXPECT_TRUE(rig.has_faults(kDeviceLost)) << submissions;
+      ++lost_while_streaming;
+    }
+    rig.device->stop();
+    EXPECT_EQ(rig.usbfs.under_way(), 0u) << submissions;
+    EXPECT_EQ(rig.rendered_N(), 0.0) << submissions;
+  }
+  EXPECT_GT(lost_while_streaming, 20);
+}
+
 TEST(Libusb, unplugged_device_fails_at_its_phase) {
   UsbRig before_open;
   before_open.usbfs.unplug();

@@ -16,6 +16,7 @@
 #include "hal/simulator/falcon_device.hpp"
 #include "hal/simulator/open_device.hpp"
 #include "hal/usbip/server.hpp"
+#include "tools/palpate/key_file.hpp"
 #include "tools/realtime/scene_hand.hpp"
 
 namespace palpate::sim {
@@ -37,6 +38,7 @@ struct Options {
   std::string serial = "SIM0001";
   fs::path scene;
   fs::path flash;
+  fs::path public_key;
   std::uint32_t slot_KiB = 512;
   std::uint32_t rate_Hz = 4000;
 };
@@ -73,6 +75,7 @@ Simulated make(const Options& options) {
     open.layout.image_units = options.slot_KiB * kBytesPerKiB / open.layout.erase_bytes;
     out.flash = std::make_unique<hal::flash::FileFlash>(options.flash, open.layout);
     open.flash = out.flash.get();
+    if (!options.public_key.empty()) open.key = cli::read_public_pem(options.public_key);
   }
   out.device = std::make_unique<hal::simulator::OpenDevice>(std::move(open));
   return out;
@@ -116,6 +119,8 @@ int run(int argc, char** argv) {
   app.add_option("--scene", options.scene, "its hand moves as the scene's [mock] says");
   app.add_option("--flash", options.flash,
                  "usb: it holds images, in this file, which is made where there is none");
+  app.add_option("--public-key", options.public_key,
+                 "usb: it takes only images signed for this key, a PEM file");
   app.add_option("--slot-kib", options.slot_KiB, "usb: size of a slot for images")
       ->check(CLI::Range(4u, 1u << 20))
       ->capture_default_str();

@@ -12,6 +12,7 @@
 #include <string>
 #include <system_error>
 #include <thread>
+#include <vector>
 
 #include "hal/mock/device.hpp"
 #include "tools/palpate/command.hpp"
@@ -76,11 +77,13 @@ class StopOnSignal {
 };
 
 std::unique_ptr<hal::Device> make_device(const RunOptions& options, const config::Scene& scene,
+                                         const std::vector<hal::protocol::ImageHash>& images,
                                          double rate_Hz, hal::Clock& clock) {
   const int priority = options.realtime.fifo_priority;
   if (options.device != "mock") {
     // Below the loop, which does not wait for it; above everything else.
-    return make_usb_device(options.device, options.firmware, clock, std::max(priority - 1, 0));
+    return make_usb_device(options.device, options.firmware, images, clock,
+                           std::max(priority - 1, 0));
   }
   hal::mock::Options mock;
   mock.rate_Hz = kMockReadingsPerTick * rate_Hz;
@@ -166,10 +169,10 @@ void run(const RunOptions& options) {
   const config::Scene scene = config::load_scene(options.scene);
   const double rate_Hz = options.rate_Hz.value_or(scene.rate_Hz);
   hal::MonotonicClock clock;
-  const auto device = make_device(options, scene, rate_Hz, clock);
   const StableScene stable = stable_scene(scene, rate_Hz, damping(options, scene));
   if (!stable.note.empty() && !options.quiet) std::cerr << stable.note << "\n";
   SceneEngine engine(stable.scene);
+  const auto device = make_device(options, scene, engine.image_hashes(), rate_Hz, clock);
   realtime::EngineQuery contacts(engine.engine(), engine.start_poses(), scene.tool);
   realtime::CoupledQuery coupled(contacts, stable.scene.virtual_tool, 1 / rate_Hz);
   realtime::ContactQuery& query = query_of(scene, contacts, coupled);
