@@ -6,8 +6,8 @@
 // record of a slot and the order of writing. What makes it safe:
 //   - the slot in use is never written;
 //   - the record is erased first and its commit word written last, so that half an image is none;
-//   - an image counts only where record, hash and structure are all right, looked at anew each
-//   start;
+//   - an image counts only where record, hash and structure are all right, and where there is a key
+//     the signature and its counter, looked at anew each start;
 //   - a word that means "yes" is one that is not erased throughout, or (commit) one that is right
 //     throughout: whichever is the safe reading of a word that a cut of power left half written.
 //
