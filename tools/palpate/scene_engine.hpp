@@ -43,6 +43,7 @@ class SceneEngine {
   /// content_sha256 of the scene's images.
   [[nodiscard]] std::vector<std::array<std::uint8_t, 32>> image_hashes() const;
 
+  [[nodiscard]] const Limits& limits() const { return limits_; }
   [[nodiscard]] std::size_t image_bytes() const { return image_bytes_; }
   [[nodiscard]] std::size_t engine_bytes() const { return engine_bytes_; }
 
