@@ -11,20 +11,22 @@ namespace {
 using image::RegionTriangle;
 using levels::PairState;
 
-/// Distances up to delta and this many ticks of the present motion are told apart, so that a region
-/// that is found farther rests for as long; not where that is more than a share of delta, for a
-/// farther limit costs more than the rest saves.
-constexpr double kRestTicks = 4;
-constexpr double kMostRest = 0.5;
+/// Pairs that are farther than the nearest by less than this many ticks of the present motion are
+/// kept, and so the region needs no search for as long; at most a share of delta, for what is
+/// farther costs more than the rest saves.
+constexpr double kRestTicks = 8;
+constexpr double kMostRest = 0.25;
+constexpr double kLeastRest = 0.01;
 /// A move by more than this (in units), or by this many delta where that is more, starts anew.
 constexpr double kJump = 0.05;
 constexpr double kJumpDelta = 2;
 /// Rounding of the odometers, in units.
-constexpr double kMotionSlack = 1e-9;
+constexpr double kMotionSlack = 1e-7;
 /// Under a budget an interval is closed to this share of its width at a time.
 constexpr float kStep = 0.1f;
 /// Below this an interval is closed: rounding leaves as much.
 constexpr float kClosed = 2 * kRounding;
+constexpr float kFarthest = 1e18f;
 
 /// Rounded towards minus infinity far enough for float.
 float float_below(double v) noexcept { return static_cast<float>(v - 1e-7 * (v < 0 ? -v : v)); }
@@ -78,33 +80,51 @@ class Query {
     if (!pair.fresh && pair.last_travel + pair.last_turn * pair.scale_a <= far) return;
     pair.fresh = false;
     const std::span<Swept> swept = memory_.swept.first(pair.image_a->regions.size());
-    sweep(*memory_.kernels, memory_.frames[index], *memory_.search, pace_, limit_of(pair), swept);
+    sweep(*memory_.kernels, memory_.frames[index], *memory_.search, pace_,
+          static_cast<float>(pair.delta + margin_of(pair)), swept);
     for (std::uint32_t i = 0; i < swept.size(); ++i) {
       RegionState& state = memory_.states[memory_.first_state[index] + i];
-      const double lower = static_cast<double>(sqrt_of(swept[i].squared) - kRounding);
       state.seed = swept[i].seed;
-      if (lower > lower_now(pair, index, i)) prove(pair, state, lower);
+      state.near.count = 0;
+      state.rest = state.lower = 0;
+      prove(pair, i, state, sqrt_of(swept[i].squared) - kRounding);
     }
   }
 
-  double lower_now(const PairState& pair, std::uint32_t index, std::uint32_t region) noexcept {
-    const RegionState& state = memory_.states[memory_.first_state[index] + region];
-    const double reach = pair.scale_a * static_cast<double>(pair.image_a->regions[region].reach);
-    return static_cast<double>(state.lower) - (pair.travel - state.travel_at) -
-           (pair.turn - state.turn_at) * reach - kMotionSlack;
+  /// Of a region, in the coordinates of b.
+  static Vec3d centre_of(const PairState& pair, std::uint32_t region) noexcept {
+    const image::Region& r = pair.image_a->regions[region];
+    const image::RegionNode& over = pair.image_a->region_nodes[r.parent];
+    const Vec3d in_a = pair.scale_a * Vec3d{static_cast<double>(over.centre[0][r.slot]),
+                                            static_cast<double>(over.centre[1][r.slot]),
+                                            static_cast<double>(over.centre[2][r.slot])};
+    return transpose(pair.b_in_a.rotation) * (in_a - pair.b_in_a.translation);
   }
 
-  static void prove(const PairState& pair, RegionState& state, double lower) noexcept {
-    state.lower = float_below(lower);
-    state.travel_at = pair.travel;
+  /// How far any point of a region has moved since the proof, at most.
+  static double moved(const PairState& pair, std::uint32_t region,
+                      const RegionState& state) noexcept {
+    const double radius =
+        pair.scale_a * static_cast<double>(pair.image_a->regions[region].radius);
+    return norm(centre_of(pair, region) - state.centre) + (pair.turn - state.turn_at) * radius +
+           kMotionSlack;
+  }
+
+  static void prove(const PairState& pair, std::uint32_t region, RegionState& state,
+                    float rest) noexcept {
+    state.rest = rest;
+    state.lower = state.near.count > 0 && state.near.pairs[0].distance - kRounding < rest
+                      ? state.near.pairs[0].distance - kRounding
+                      : rest;
+    state.centre = centre_of(pair, region);
     state.turn_at = pair.turn;
   }
 
-  /// Distances up to here are told apart.
-  static float limit_of(const PairState& pair) noexcept {
+  /// How far a region's rest is looked for.
+  static double margin_of(const PairState& pair) noexcept {
     const double rest = kRestTicks * (pair.last_travel + pair.last_turn * pair.scale_a);
-    return static_cast<float>(rest <= kMostRest * pair.delta ? pair.delta + rest : pair.delta) +
-           kClosed;
+    const double least = kLeastRest * pair.delta;
+    return rest > kMostRest * pair.delta ? 0 : rest > least ? rest : least;
   }
 
   /// The regions of a pair that may be nearer than delta.
@@ -115,30 +135,60 @@ class Query {
     const std::uint32_t first = memory_.first_state[index];
     const auto regions = pair.image_a->regions;
     for (std::uint32_t i = 0; i < regions.size(); ++i) {
-      const double lower = lower_now(pair, index, i);
-      if (lower >= pair.delta) continue;
+      const RegionState& state = memory_.states[first + i];
+      const double moved_by = moved(pair, i, state);
+      if (static_cast<double>(state.lower) - moved_by >= pair.delta) continue;
       Active& item = memory_.active[count_++];
-      item.lower = lower > 0 ? float_below(lower) : 0.0f;
+      item.moved = static_cast<float>(moved_by);
+      item.rest = float_below(static_cast<double>(state.rest) - moved_by);
       item.state = first + i;
       item.region = i;
       item.pair = index;
     }
   }
 
+  /// The witness of a region, and those of its near pairs that may be nearer now.
   void measure_witnesses() noexcept {
-    Witness* batch[kBatch];
-    std::uint32_t pending = 0;
     for (std::uint32_t i = 0; i < count_; ++i) {
-      const Active& item = active()[i];
-      Witness& witness = state_of(item).witness;
-      if (witness.known()) batch[pending++] = &witness;
-      const bool last_of_pair = i + 1 == count_ || active()[i + 1].pair != item.pair;
-      if (pending > 0 && (pending == kBatch || last_of_pair)) {
-        measure(*memory_.kernels, frame_of_item(item), *memory_.search, pace_, batch, pending);
-        pending = 0;
+      Active& item = active()[i];
+      if (pending_ > 0 && active()[pending_of_[0]].pair != item.pair) flush();
+      RegionState& state = state_of(item);
+      const Witness last = state.witness;
+      state.witness.distance = kFarthest;
+      if (last.known()) add_pending(i, last);
+      float least = static_cast<float>(pair_of(item).delta);
+      if (state.near.count > 0 && state.near.pairs[0].distance + item.moved < least) {
+        least = state.near.pairs[0].distance + item.moved;
+      }
+      for (std::uint32_t k = 0; k < state.near.count; ++k) {
+        const Witness& pair = state.near.pairs[k];
+        if (pair.distance - item.moved >= least) break;
+        if (!pair.same_pair(last)) add_pending(i, pair);
       }
     }
+    if (pending_ > 0) flush();
     for (Active& item : active()) widen(item);
+  }
+
+  void add_pending(std::uint32_t item, const Witness& pair) noexcept {
+    pending_of_[pending_] = item;
+    memory_.search->batch_a[pending_] = pair.a;
+    memory_.search->batch_b[pending_] = pair.b;
+    if (++pending_ == kBatch) flush();
+  }
+
+  void flush() noexcept {
+    float distances[kBatch];
+    SearchScratch& scratch = *memory_.search;
+    const Active& first = active()[pending_of_[0]];
+    measure(*memory_.kernels, frame_of_item(first), scratch, pace_, pending_, distances);
+    for (std::uint32_t i = 0; i < pending_; ++i) {
+      Witness& witness = state_of(active()[pending_of_[i]]).witness;
+      if (distances[i] < witness.distance) {
+        witness = {scratch.batch_a[i], scratch.batch_b[i], distances[i]};
+      }
+    }
+    pending_ = 0;
   }
 
   void climb_witnesses() noexcept {
@@ -155,7 +205,7 @@ class Query {
     const Witness& witness = state_of(item).witness;
     const auto delta = static_cast<float>(pair_of(item).delta);
     const float upper = witness.known() && witness.distance < delta ? witness.distance : delta;
-    item.width = upper > item.lower ? upper - item.lower : 0;
+    item.width = upper > item.rest ? upper - (item.rest > 0 ? item.rest : 0) : 0;
   }
 
   void refine() noexcept {
@@ -221,22 +271,32 @@ class Query {
     }
     const PairState& pair = pair_of(item);
     RegionState& state = state_of(item);
-    // The search's lower bound gives away kRounding, which is part of the interval.
+    // The search's bound gives away kRounding, which is part of the interval.
     const float room = tolerance > kRounding ? tolerance - kRounding : 0;
+    const Reach reach{static_cast<float>(pair.delta) + kClosed,
+                      static_cast<float>(margin_of(pair)) - room};
     const Bounds found = search(*memory_.kernels, frame_of_item(item), *memory_.search, pace_,
-                                item.region, state.witness, limit_of(pair), room);
+                                item.region, state.witness, reach);
     state.witness = found.best;
-    if (found.lower > item.lower) item.lower = found.lower;
     truncated_ |= !found.complete;
-    prove(pair, state, static_cast<double>(item.lower));
+    if (found.rest > item.rest) {
+      item.rest = found.rest;
+      item.moved = 0;
+      state.near = memory_.search->near;
+      prove(pair, item.region, state, found.rest);
+    }
     widen(item);
   }
 
   void certify() noexcept {
     for (const Active& item : active()) {
       const PairState& pair = pair_of(item);
-      const double lower_m = static_cast<double>(item.lower) * pair.unit_m;
-      if (static_cast<double>(item.lower) < pair.delta && lower_m < result_.unresolved_lower_m) {
+      const Witness& witness = state_of(item).witness;
+      const float upper =
+          witness.known() ? witness.distance - kRounding : static_cast<float>(pair.delta);
+      const auto lower = static_cast<double>(item.rest < upper ? item.rest : upper);
+      const double lower_m = (lower > 0 ? lower : 0) * pair.unit_m;
+      if (lower < pair.delta && lower_m < result_.unresolved_lower_m) {
         result_.unresolved_lower_m = lower_m;
       }
       result_.open_m += width_m(item);
@@ -380,6 +440,8 @@ class Query {
   Meter& meter_;
   Pace pace_;
   std::uint32_t count_ = 0;  // of active regions
+  std::uint32_t pending_ = 0;
+  std::uint32_t pending_of_[kBatch];  // which active region a pair to be measured belongs to
   bool truncated_ = false;
   QueryResult result_;
 };

@@ -20,19 +20,26 @@
 
 namespace palpate::regions {
 
-/// What is kept of a region from tick to tick: a witness and a bound. Lengths in units of the pair.
+/// What is kept of a region from tick to tick. Lengths in units of the pair.
+///
+/// The proof: when the region's centre stood at `centre`, every pair of its triangles and b's was
+/// in `near`, or at least `rest` apart. Since then no distance has shrunk by more than the region
+/// has moved.
 struct RegionState {
-  float lower = 0;       ///< proved lower bound of its distance from b, when the odometers of the
-  double travel_at = 0;  ///< ... pair stood here
-  double turn_at = 0;
-  Witness witness;  ///< its distance is of the last tick in which the region was near
+  float rest = 0;
+  float lower = 0;       ///< the least of `rest` and of the distances of `near`
+  Vec3d centre{};        ///< in the coordinates of b
+  double turn_at = 0;    ///< PairState::turn
+  Witness witness;       ///< its distance is of the last tick in which the region was near
   std::uint32_t seed = image::kNone;  ///< where to look for a witness: a child of b's tree
+  NearPairs near;
 };
 
 /// A region that may be nearer than delta in this tick.
 struct Active {
-  float lower = 0;  ///< at the present poses
-  float width = 0;  ///< min(witness, delta) - lower: what its force may still change by
+  float rest = 0;   ///< at the present poses
+  float moved = 0;  ///< since the proof, at most
+  float width = 0;  ///< min(witness, delta) - rest: what its force may still change by
   std::uint32_t state = 0;
   std::uint32_t region = 0;
   std::uint32_t pair = 0;
