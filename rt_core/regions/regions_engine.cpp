@@ -13,9 +13,10 @@ using levels::PairState;
 
 /// Pairs that are farther than the nearest by less than this many ticks of the present motion are
 /// kept, and so the region needs no search for as long; at most a share of delta, for what is
-/// farther costs more than the rest saves.
-constexpr double kRestTicks = 8;
-constexpr double kMostRest = 0.25;
+/// farther costs more than the rest saves; and not where that is no more than a few ticks.
+constexpr double kRestTicks = 6;
+constexpr double kFewestTicks = 3;
+constexpr double kMostRest = 0.4;
 constexpr double kLeastRest = 0.01;
 /// A move by more than this (in units), or by this many delta where that is more, starts anew.
 constexpr double kJump = 0.05;
@@ -48,7 +49,6 @@ class Query {
   QueryResult run() noexcept {
     for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) gather(i);
     measure_witnesses();
-    climb_witnesses();
     refine();
     meter_.begin_tail();
     certify();
@@ -122,9 +122,12 @@ class Query {
 
   /// How far a region's rest is looked for.
   static double margin_of(const PairState& pair) noexcept {
-    const double rest = kRestTicks * (pair.last_travel + pair.last_turn * pair.scale_a);
+    const double tick = pair.last_travel + pair.last_turn * pair.scale_a;
+    const double most = kMostRest * pair.delta;
+    if (kFewestTicks * tick > most) return 0;
+    const double wanted = kRestTicks * tick;
     const double least = kLeastRest * pair.delta;
-    return rest > kMostRest * pair.delta ? 0 : rest > least ? rest : least;
+    return wanted > most ? most : wanted > least ? wanted : least;
   }
 
   /// The regions of a pair that may be nearer than delta.
@@ -210,6 +213,7 @@ class Query {
 
   void refine() noexcept {
     if (demand_.limited || demand_.tolerance_m > 0) {
+      climb_witnesses();
       refine_widest_first();
       return;
     }
