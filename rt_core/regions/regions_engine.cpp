@@ -4,11 +4,11 @@
 #include <limits>
 
 #include "rt_core/base/queue.hpp"
+#include "rt_core/regions/report.hpp"
 
 namespace palpate::regions {
 namespace {
 
-using image::RegionTriangle;
 using levels::PairState;
 
 /// Pairs that are farther than the nearest by less than this many ticks of the present motion are
@@ -21,22 +21,18 @@ constexpr double kLeastRest = 0.01;
 /// A move by more than this (in units), or by this many delta where that is more, starts anew.
 constexpr double kJump = 0.05;
 constexpr double kJumpDelta = 2;
-/// Rounding of the odometers, in units.
-constexpr double kMotionSlack = 1e-7;
 /// Under a budget an interval is closed to this share of its width at a time.
-constexpr float kStep = 0.1f;
+constexpr float kStep = 0.3f;
+/// A region without a witness is searched at once where what is proved is more than this share of
+/// delta: that is cheap then, and it is probably farther than delta.
+constexpr float kLostShare = 0.5f;
 /// Below this an interval is closed: rounding leaves as much.
 constexpr float kClosed = 2 * kRounding;
+/// More than any distance.
 constexpr float kFarthest = 1e18f;
 
 /// Rounded towards minus infinity far enough for float.
 float float_below(double v) noexcept { return static_cast<float>(v - 1e-7 * (v < 0 ? -v : v)); }
-
-Vec3d corner(const RegionTriangle& t, std::uint32_t i, double scale) noexcept {
-  return scale * Vec3d{static_cast<double>(t.corners[3 * i]),
-                       static_cast<double>(t.corners[3 * i + 1]),
-                       static_cast<double>(t.corners[3 * i + 2])};
-}
 
 class Query {
  public:
@@ -49,10 +45,11 @@ class Query {
   QueryResult run() noexcept {
     for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) gather(i);
     measure_witnesses();
+    measure_near_pairs();
     refine();
     meter_.begin_tail();
     certify();
-    report();
+    report(memory_, active(), pace_, result_);
     result_.queries = pace_.used();
     result_.near_regions = count_;
     result_.truncated_by_units = truncated_ && pace_.units_ended();
@@ -86,38 +83,8 @@ class Query {
       RegionState& state = memory_.states[memory_.first_state[index] + i];
       state.seed = swept[i].seed;
       state.near.count = 0;
-      state.rest = state.lower = 0;
-      prove(pair, i, state, sqrt_of(swept[i].squared) - kRounding);
+      prove(state, pair, i, sqrt_of(swept[i].squared) - kRounding);
     }
-  }
-
-  /// Of a region, in the coordinates of b.
-  static Vec3d centre_of(const PairState& pair, std::uint32_t region) noexcept {
-    const image::Region& r = pair.image_a->regions[region];
-    const image::RegionNode& over = pair.image_a->region_nodes[r.parent];
-    const Vec3d in_a = pair.scale_a * Vec3d{static_cast<double>(over.centre[0][r.slot]),
-                                            static_cast<double>(over.centre[1][r.slot]),
-                                            static_cast<double>(over.centre[2][r.slot])};
-    return transpose(pair.b_in_a.rotation) * (in_a - pair.b_in_a.translation);
-  }
-
-  /// How far any point of a region has moved since the proof, at most.
-  static double moved(const PairState& pair, std::uint32_t region,
-                      const RegionState& state) noexcept {
-    const double radius =
-        pair.scale_a * static_cast<double>(pair.image_a->regions[region].radius);
-    return norm(centre_of(pair, region) - state.centre) + (pair.turn - state.turn_at) * radius +
-           kMotionSlack;
-  }
-
-  static void prove(const PairState& pair, std::uint32_t region, RegionState& state,
-                    float rest) noexcept {
-    state.rest = rest;
-    state.lower = state.near.count > 0 && state.near.pairs[0].distance - kRounding < rest
-                      ? state.near.pairs[0].distance - kRounding
-                      : rest;
-    state.centre = centre_of(pair, region);
-    state.turn_at = pair.turn;
   }
 
   /// How far a region's rest is looked for.
@@ -139,7 +106,7 @@ class Query {
     const auto regions = pair.image_a->regions;
     for (std::uint32_t i = 0; i < regions.size(); ++i) {
       const RegionState& state = memory_.states[first + i];
-      const double moved_by = moved(pair, i, state);
+      const double moved_by = moved_since(state, pair, i);
       if (static_cast<double>(state.lower) - moved_by >= pair.delta) continue;
       Active& item = memory_.active[count_++];
       item.moved = static_cast<float>(moved_by);
@@ -147,44 +114,61 @@ class Query {
       item.state = first + i;
       item.region = i;
       item.pair = index;
+      item.climbed = false;
     }
   }
 
-  /// The witness of a region, and those of its near pairs that may be nearer now.
   void measure_witnesses() noexcept {
     for (std::uint32_t i = 0; i < count_; ++i) {
-      Active& item = active()[i];
-      if (pending_ > 0 && active()[pending_of_[0]].pair != item.pair) flush();
-      RegionState& state = state_of(item);
-      const Witness last = state.witness;
-      state.witness.distance = kFarthest;
-      if (last.known()) add_pending(i, last);
-      float least = static_cast<float>(pair_of(item).delta);
-      if (state.near.count > 0 && state.near.pairs[0].distance + item.moved < least) {
-        least = state.near.pairs[0].distance + item.moved;
-      }
-      for (std::uint32_t k = 0; k < state.near.count; ++k) {
-        const Witness& pair = state.near.pairs[k];
-        if (pair.distance - item.moved >= least) break;
-        if (!pair.same_pair(last)) add_pending(i, pair);
-      }
+      Witness& witness = state_of(active()[i]).witness;
+      if (!witness.known()) continue;
+      const Witness at_last = witness;
+      witness.distance = kFarthest;
+      measure_soon(i, at_last);
     }
-    if (pending_ > 0) flush();
+    flush();
     for (Active& item : active()) widen(item);
   }
 
-  void add_pending(std::uint32_t item, const Witness& pair) noexcept {
-    pending_of_[pending_] = item;
+  /// Those of the near pairs that may be nearer than the witness now. Where the budget ends this,
+  /// they count as not kept.
+  void measure_near_pairs() noexcept {
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      Active& item = active()[i];
+      const RegionState& state = state_of(item);
+      const float upper = upper_of(item);
+      for (std::uint32_t k = 0; k < state.near.count; ++k) {
+        const Witness& pair = state.near.pairs[k];
+        const float lower = pair.distance - item.moved;
+        if (lower >= upper) break;
+        if (!pace_.go_on()) {
+          item.rest = lower - kRounding < item.rest ? lower - kRounding : item.rest;
+          break;
+        }
+        if (!pair.same_pair(state.witness)) measure_soon(i, pair);
+      }
+    }
+    flush();
+    for (Active& item : active()) widen(item);
+  }
+
+  void measure_soon(std::uint32_t index, const Witness& pair) noexcept {
+    if (pending_ == kBatch ||
+        (pending_ > 0 && active()[pending_of_[0]].pair != active()[index].pair)) {
+      flush();
+    }
+    pending_of_[pending_] = index;
     memory_.search->batch_a[pending_] = pair.a;
     memory_.search->batch_b[pending_] = pair.b;
-    if (++pending_ == kBatch) flush();
+    ++pending_;
   }
 
   void flush() noexcept {
+    if (pending_ == 0) return;
     float distances[kBatch];
     SearchScratch& scratch = *memory_.search;
-    const Active& first = active()[pending_of_[0]];
-    measure(*memory_.kernels, frame_of_item(first), scratch, pace_, pending_, distances);
+    const PairFrame& frame = frame_of_item(active()[pending_of_[0]]);
+    measure(*memory_.kernels, frame, scratch, pace_, pending_, distances);
     for (std::uint32_t i = 0; i < pending_; ++i) {
       Witness& witness = state_of(active()[pending_of_[i]]).witness;
       if (distances[i] < witness.distance) {
@@ -194,26 +178,20 @@ class Query {
     pending_ = 0;
   }
 
-  void climb_witnesses() noexcept {
-    for (Active& item : active()) {
-      Witness& witness = state_of(item).witness;
-      const auto delta = static_cast<float>(pair_of(item).delta);
-      if (!witness.known() || item.width <= kClosed || witness.distance >= 2 * delta) continue;
-      climb(*memory_.kernels, frame_of_item(item), *memory_.search, pace_, witness);
-      widen(item);
-    }
+  /// min(witness, delta)
+  float upper_of(const Active& item) noexcept {
+    const Witness& witness = state_of(item).witness;
+    const auto delta = static_cast<float>(pair_of(item).delta);
+    return witness.known() && witness.distance < delta ? witness.distance : delta;
   }
 
   void widen(Active& item) noexcept {
-    const Witness& witness = state_of(item).witness;
-    const auto delta = static_cast<float>(pair_of(item).delta);
-    const float upper = witness.known() && witness.distance < delta ? witness.distance : delta;
+    const float upper = upper_of(item);
     item.width = upper > item.rest ? upper - (item.rest > 0 ? item.rest : 0) : 0;
   }
 
   void refine() noexcept {
     if (demand_.limited || demand_.tolerance_m > 0) {
-      climb_witnesses();
       refine_widest_first();
       return;
     }
@@ -234,19 +212,27 @@ class Query {
       Active& item = active()[index];
       if (item.width <= kClosed) break;
       open_m -= width_m(item);
-      if (state_of(item).seed != image::kNone) {
-        dive_and_climb(item);
-        open_m += width_m(item);
-        if (truncated_) return;
-        queue.push(index);
-        continue;
-      }
       const auto share = static_cast<float>(share_m / pair_of(item).unit_m);
-      const float step = demand_.limited ? kStep * item.width : 0;
-      close(item, step > share ? step : share);
+      narrow(item, share);
       open_m += width_m(item);
       if (truncated_) return;
       queue.push(index);
+    }
+  }
+
+  /// One step: a witness is sought, then moved to a nearer one, then the region is searched.
+  void narrow(Active& item, float share) noexcept {
+    RegionState& state = state_of(item);
+    const auto delta = static_cast<float>(pair_of(item).delta);
+    const bool lost = !state.witness.known() && item.rest < kLostShare * delta;
+    if (state.seed != image::kNone || lost) {
+      dive_and_climb(item);
+    } else if (!item.climbed && state.witness.distance < 2 * delta) {
+      climb(*memory_.kernels, frame_of_item(item), *memory_.search, pace_, state.witness);
+      end_climb(item);
+    } else {
+      const float step = demand_.limited ? kStep * item.width : 0;
+      close(item, step > share ? step : share);
     }
   }
 
@@ -258,6 +244,11 @@ class Query {
     if (found.known()) climb(*memory_.kernels, frame, *memory_.search, pace_, found);
     const Witness& old = state.witness;
     if (found.known() && !(old.known() && old.distance < found.distance)) state.witness = found;
+    end_climb(item);
+  }
+
+  void end_climb(Active& item) noexcept {
+    item.climbed = true;
     truncated_ |= !pace_.go_on();
     widen(item);
   }
@@ -287,7 +278,7 @@ class Query {
       item.rest = found.rest;
       item.moved = 0;
       state.near = memory_.search->near;
-      prove(pair, item.region, state, found.rest);
+      prove(state, pair, item.region, found.rest);
     }
     widen(item);
   }
@@ -307,136 +298,6 @@ class Query {
       const double size = static_cast<double>(pair.image_a->regions[item.region].radius);
       if (item.width > kClosed && size > result_.s_worst) result_.s_worst = size;
     }
-  }
-
-  /// Witnesses nearer than delta become contacts, sixteen at a time.
-  void report() noexcept {
-    std::uint32_t batch[kBatch];
-    std::uint32_t pending = 0;
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      const Active& item = active()[i];
-      const Witness& witness = state_of(item).witness;
-      if (witness.known() && witness.distance < static_cast<float>(pair_of(item).delta)) {
-        batch[pending++] = i;
-      }
-      if (pending == kBatch || (i + 1 == count_ && pending > 0)) {
-        report_batch(batch, pending);
-        pending = 0;
-      }
-    }
-  }
-
-  void report_batch(const std::uint32_t (&batch)[kBatch], std::uint32_t count) noexcept {
-    Vec3d origin[kBatch];
-    TriangleLanes& lanes = memory_.search->kernel.lanes;
-    for (std::uint32_t i = 0; i < kBatch; ++i) {
-      origin[i] = place(active()[batch[i < count ? i : 0]], i, lanes);
-    }
-    WitnessLanes found;
-    memory_.kernels->witnesses(memory_.search->kernel, found);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const Active& item = active()[batch[i]];
-      if ((found.crossing >> i & 1u) != 0) {
-        report_crossing(item);
-        continue;
-      }
-      const Vec3d on_a = origin[i] + lane(found.on_a, i);
-      report_apart(item, on_a, lane(found.apart, i));
-    }
-  }
-
-  static Vec3d lane(const float (&rows)[3][kBatch], std::uint32_t i) noexcept {
-    return {static_cast<double>(rows[0][i]), static_cast<double>(rows[1][i]),
-            static_cast<double>(rows[2][i])};
-  }
-
-  /// The witness's triangles in the coordinates of a, relative to a corner that is returned: in
-  /// double up to there, so that only the size of the pair is rounded.
-  Vec3d place(const Active& item, std::uint32_t i, TriangleLanes& lanes) noexcept {
-    const PairState& pair = pair_of(item);
-    const Witness& witness = state_of(item).witness;
-    const RegionTriangle& a = pair.image_a->region_triangles[witness.a];
-    const RegionTriangle& b = pair.image_b->region_triangles[witness.b];
-    const Vec3d origin = corner(a, 0, pair.scale_a);
-    for (std::uint32_t c = 0; c < 3; ++c) {
-      put(corner(a, c, pair.scale_a) - origin, c, i, lanes.a);
-      const Vec3d of_b = pair.b_in_a.rotation * corner(b, c, pair.scale_b);
-      put(of_b + pair.b_in_a.translation - origin, c, i, lanes.b);
-    }
-    return origin;
-  }
-
-  static void put(Vec3d p, std::uint32_t corner, std::uint32_t i,
-                  float (&rows)[9][kBatch]) noexcept {
-    rows[3 * corner][i] = static_cast<float>(p.x);
-    rows[3 * corner + 1][i] = static_cast<float>(p.y);
-    rows[3 * corner + 2][i] = static_cast<float>(p.z);
-  }
-
-  void report_apart(const Active& item, Vec3d on_a, Vec3d apart) noexcept {
-    const PairState& pair = pair_of(item);
-    const Witness& witness = state_of(item).witness;
-    const double distance = norm(apart);
-    constexpr double kTouching = 1e-9;  // a direction of so short a vector is rounding
-    const Vec3d normal = distance > kTouching ? (1 / distance) * apart : facing(pair, witness);
-    add(item,
-        {on_a, on_a - apart, normal, distance, pair.image_a->region_triangles[witness.a].piece,
-         pair.image_b->region_triangles[witness.b].piece});
-  }
-
-  /// Where two triangles touch: the outward normal of b's.
-  static Vec3d facing(const PairState& pair, const Witness& witness) noexcept {
-    const RegionTriangle& t = pair.image_b->region_triangles[witness.b];
-    const Vec3d p = corner(t, 0, 1);
-    const Vec3d n = pair.b_in_a.rotation * cross(corner(t, 1, 1) - p, corner(t, 2, 1) - p);
-    const double length = norm(n);
-    return length > 0 ? (1 / length) * n : Vec3d{1, 0, 0};
-  }
-
-  void report_crossing(const Active& item) noexcept {
-    const PairState& pair = pair_of(item);
-    const PairFrame& frame = frame_of_item(item);
-    const Witness& witness = state_of(item).witness;
-    CrossingScratch& scratch = *memory_.crossing;
-    scratch.list.count = 0;
-    find_crossings(*memory_.kernels, frame, *memory_.search, pace_, item.region, scratch.list);
-    // Only where the budget or rounding kept the search from finding any: the list shall not depend
-    // on how the witness came about.
-    if (scratch.list.count == 0) note_crossing(frame, witness.a, witness.b, scratch.list);
-    if (scratch.list.count == kMaxCrossings) result_.iteration_cap_met = true;
-    const Crossing c = deepest(pair, scratch);
-    if (!c.exact) result_.iteration_cap_met = true;
-    add(item, {c.point_a, c.point_b, c.normal, -c.depth, c.piece_a, c.piece_b});
-  }
-
-  /// In the coordinates of a, lengths in units.
-  struct Found {
-    Vec3d point_a;
-    Vec3d point_b;
-    Vec3d normal;
-    double distance;
-    std::uint32_t piece_a;
-    std::uint32_t piece_b;
-  };
-
-  void add(const Active& item, const Found& found) noexcept {
-    const PairState& pair = pair_of(item);
-    if (result_.contacts == memory_.contacts.size()) {
-      result_.truncated_by_memory = true;
-      return;
-    }
-    Contact& out = memory_.contacts[result_.contacts++];
-    out.point_a_m = pair.centre_a_m + pair.rotation_a * (pair.unit_m * found.point_a);
-    out.point_b_m = pair.centre_a_m + pair.rotation_a * (pair.unit_m * found.point_b);
-    out.normal = pair.rotation_a * found.normal;
-    out.distance_m = found.distance * pair.unit_m;
-    out.weight = 0;
-    out.pair = item.pair;
-    out.piece_a = found.piece_a;
-    out.level_a = 0;
-    out.piece_b = found.piece_b;
-    out.level_b = 0;
-    if (out.distance_m < result_.min_distance_m) result_.min_distance_m = out.distance_m;
   }
 
   QueryMemory& memory_;

@@ -15,25 +15,11 @@
 #include "rt_core/palpate_rt.hpp"
 #include "rt_core/regions/crossing.hpp"
 #include "rt_core/regions/kernels.hpp"
+#include "rt_core/regions/region_state.hpp"
 #include "rt_core/regions/search.hpp"
 #include "rt_core/regions/sweep.hpp"
 
 namespace palpate::regions {
-
-/// What is kept of a region from tick to tick. Lengths in units of the pair.
-///
-/// The proof: when the region's centre stood at `centre`, every pair of its triangles and b's was
-/// in `near`, or at least `rest` apart. Since then no distance has shrunk by more than the region
-/// has moved.
-struct RegionState {
-  float rest = 0;
-  float lower = 0;       ///< the least of `rest` and of the distances of `near`
-  Vec3d centre{};        ///< in the coordinates of b
-  double turn_at = 0;    ///< PairState::turn
-  Witness witness;       ///< its distance is of the last tick in which the region was near
-  std::uint32_t seed = image::kNone;  ///< where to look for a witness: a child of b's tree
-  NearPairs near;
-};
 
 /// A region that may be nearer than delta in this tick.
 struct Active {
@@ -43,6 +29,7 @@ struct Active {
   std::uint32_t state = 0;
   std::uint32_t region = 0;
   std::uint32_t pair = 0;
+  bool climbed = false;  ///< the witness has been moved to the nearest of its neighbours
 };
 
 /// Memory of the query, borrowed from the engine.
@@ -87,11 +74,13 @@ struct Demand {
 /// and deltas are set.
 ///
 /// Regions whose lower bound, less the motion since it was proved, is delta or more cost nothing.
-/// The witnesses of the others are measured at the present poses, moved to nearer neighbours, and
-/// bound the distances from above; then the regions are searched (search.hpp), under a budget the
-/// widest interval first and closed in steps. Whatever ends it, every interval holds its distance,
-/// and every witness nearer than delta is a contact. Where triangles cross, the pieces that they
-/// belong to give depth and direction (crossing.hpp).
+/// The witnesses of the others, and those of the pairs kept of them that may be nearer, are
+/// measured at the present poses and bound the distances from above. That is exact for as long as
+/// no other pair can have come as near; then the region is searched again (search.hpp), under a
+/// budget the widest interval first and closed in steps, after a cheap look at the witness's
+/// neighbours. Whatever ends it, every interval holds its distance, and every witness nearer than
+/// delta is a contact. Where triangles cross, the pieces that they belong to give depth and
+/// direction (crossing.hpp).
 ///
 /// A contact's pieces are those of level 0 that hold the witnesses. Cost: the budget, plus
 /// O(regions), plus one witness of each near region.

@@ -58,7 +58,12 @@ class Search {
   /// Keeps the nearest child only, from a pair on: finds a witness, and no bound.
   Witness dive(const image::Region& region, std::uint32_t seed) noexcept {
     greedy_ = true;
-    push({child_name(region.parent, region.slot), seed, 0});
+    const std::uint32_t top = child_name(region.parent, region.slot);
+    if (seed == image::kNone) {
+      visit_root(top);
+    } else {
+      push({top, seed, 0});
+    }
     return finish().best;
   }
 
@@ -346,8 +351,7 @@ void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratc
 
 Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
               std::uint32_t region, const Witness& witness, const Reach& reach) noexcept {
-  return Search(kernels, frame, scratch, pace, witness, reach)
-      .run(frame.a->regions[region]);
+  return Search(kernels, frame, scratch, pace, witness, reach).run(frame.a->regions[region]);
 }
 
 void note_crossing(const PairFrame& frame, std::uint32_t triangle_a, std::uint32_t triangle_b,

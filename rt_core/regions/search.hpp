@@ -78,18 +78,20 @@ void measure(const Kernels& kernels, const PairFrame& frame, SearchScratch& scra
 
 /// Goes from a witness to a neighbour of either triangle, or of both, while that is nearer; within
 /// the witness's region of a. At most kMaxClimb batches.
-inline constexpr std::uint32_t kMaxClimb = 8;
+inline constexpr std::uint32_t kMaxClimb = 3;
 void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
            Witness& witness) noexcept;
 
 /// How far a search looks.
 struct Reach {
-  float limit = 0;   ///< distances from here on are of no interest
-  float margin = 0;  ///< pairs farther than the nearest by less are kept; < 0: so much may be missed
+  float limit = 0;  ///< distances from here on are of no interest
+  float margin =
+      0;  ///< pairs farther than the nearest by less are kept; < 0: so much may be missed
 };
 
 /// Depth-first search of both trees, nearest child first: what is not nearer than
-/// min(best, limit) + margin is passed over, and the pairs that are nearer are kept in scratch.near.
+/// min(best, limit) + margin is passed over, and the pairs that are nearer are kept in
+/// scratch.near.
 ///
 /// @param region   of a
 /// @param witness  the best known; its distance at the present poses
@@ -116,7 +118,7 @@ void find_crossings(const Kernels& kernels, const PairFrame& frame, SearchScratc
                     Pace& pace, std::uint32_t region, CrossingList& list) noexcept;
 
 /// A witness of a region by going to the nearest child of both trees, one path only.
-/// @param seed  a child of b to start from
+/// @param seed  a child of b to start from; kNone: the root
 /// Unknown where the budget ended it. Cost: kMaxRegionDepth boxes of each tree and two batches.
 Witness dive(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
              std::uint32_t region, std::uint32_t seed) noexcept;
