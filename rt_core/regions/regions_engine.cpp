@@ -23,9 +23,6 @@ constexpr double kJump = 0.05;
 constexpr double kJumpDelta = 2;
 /// Under a budget an interval is closed to this share of its width at a time.
 constexpr float kStep = 0.3f;
-/// A region without a witness is searched at once where what is proved is more than this share of
-/// delta: that is cheap then, and it is probably farther than delta.
-constexpr float kLostShare = 0.5f;
 /// Below this an interval is closed: rounding leaves as much.
 constexpr float kClosed = 2 * kRounding;
 /// More than any distance.
@@ -220,18 +217,23 @@ class Query {
     }
   }
 
-  /// One step: a witness is sought, then moved to a nearer one, then the region is searched.
+  /// One step. Under a budget that may end any moment, the cheap ones first: a witness is sought,
+  /// then moved to a nearer one, then the region is searched.
   void narrow(Active& item, float share) noexcept {
+    if (!demand_.limited) {
+      close(item, share);
+      return;
+    }
     RegionState& state = state_of(item);
+    const Witness& witness = state.witness;
     const auto delta = static_cast<float>(pair_of(item).delta);
-    const bool lost = !state.witness.known() && item.rest < kLostShare * delta;
-    if (state.seed != image::kNone || lost) {
+    if ((state.seed != image::kNone || !witness.known()) && item.rest <= 0) {
       dive_and_climb(item);
-    } else if (!item.climbed && state.witness.distance < 2 * delta) {
+    } else if (!item.climbed && witness.known() && witness.distance < 2 * delta) {
       climb(*memory_.kernels, frame_of_item(item), *memory_.search, pace_, state.witness);
       end_climb(item);
     } else {
-      const float step = demand_.limited ? kStep * item.width : 0;
+      const float step = kStep * item.width;
       close(item, step > share ? step : share);
     }
   }
