@@ -89,6 +89,7 @@ void lay_out_regions(Arena& arena, const Scene& scene, regions::QueryMemory& out
     most = count > most ? count : most;
   }
   out.frames = arena.array<regions::PairFrame>(scene.pairs.size());
+  out.containment = arena.array<regions::Containment>(scene.pairs.size());
   out.first_state = arena.array<std::uint32_t>(scene.pairs.size());
   out.states = arena.array<regions::RegionState>(all);
   out.active = arena.array<regions::Active>(all);

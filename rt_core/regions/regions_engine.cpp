@@ -43,7 +43,9 @@ class Query {
     for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) gather(i);
     measure_witnesses();
     measure_near_pairs();
+    for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) settle_side(i);
     refine();
+    for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) find_way_out(i);
     meter_.begin_tail();
     certify();
     report(memory_, active(), pace_, result_);
@@ -71,8 +73,9 @@ class Query {
   void sweep_if_lost(std::uint32_t index) noexcept {
     PairState& pair = memory_.pairs[index];
     const double far = kJumpDelta * pair.delta > kJump ? kJumpDelta * pair.delta : kJump;
-    if (!pair.fresh && pair.last_travel + pair.last_turn * pair.scale_a <= far) return;
+    if (!pair.fresh && last_motion(pair) <= far) return;
     pair.fresh = false;
+    memory_.containment[index].doubtful = true;
     const std::span<Swept> swept = memory_.swept.first(pair.image_a->regions.size());
     sweep(*memory_.kernels, memory_.frames[index], *memory_.search, pace_,
           static_cast<float>(pair.delta + margin_of(pair)), swept);
@@ -84,9 +87,14 @@ class Query {
     }
   }
 
+  /// Of any point of a, at most.
+  static double last_motion(const PairState& pair) noexcept {
+    return pair.last_travel + pair.last_turn * pair.scale_a;
+  }
+
   /// How far a region's rest is looked for.
   static double margin_of(const PairState& pair) noexcept {
-    const double tick = pair.last_travel + pair.last_turn * pair.scale_a;
+    const double tick = last_motion(pair);
     const double most = kMostRest * pair.delta;
     if (kFewestTicks * tick > most) return 0;
     const double wanted = kRestTicks * tick;
@@ -120,6 +128,10 @@ class Query {
       Witness& witness = state_of(active()[i]).witness;
       if (!witness.known()) continue;
       const Witness at_last = witness;
+      const PairState& pair = pair_of(active()[i]);
+      if (static_cast<double>(at_last.distance) <= last_motion(pair)) {
+        memory_.containment[active()[i].pair].doubtful = true;
+      }
       witness.distance = kFarthest;
       measure_soon(i, at_last);
     }
@@ -185,6 +197,72 @@ class Query {
   void widen(Active& item) noexcept {
     const float upper = upper_of(item);
     item.width = upper > item.rest ? upper - (item.rest > 0 ? item.rest : 0) : 0;
+  }
+
+  bool crosses(std::uint32_t index) noexcept {
+    for (const Active& item : active()) {
+      const Witness& witness = state_of(item).witness;
+      if (item.pair == index && witness.known() && witness.distance <= 0) return true;
+    }
+    return false;
+  }
+
+  /// Surfaces that cross have no inside to speak of, and are looked at once they have parted.
+  void settle_side(std::uint32_t index) noexcept {
+    Containment& kept = memory_.containment[index];
+    if (!kept.doubtful || crosses(index)) return;
+    const Side side = contained(*memory_.kernels, memory_.pairs[index], *memory_.search, pace_);
+    kept.inside = side == Side::inside;
+    kept.doubtful = side == Side::unknown;
+    kept.nearest = {};
+  }
+
+  /// Inside, and no region near the surface: the nearest pair of all becomes the contact.
+  void find_way_out(std::uint32_t index) noexcept {
+    Containment& kept = memory_.containment[index];
+    if (crosses(index)) {
+      kept.inside = false;
+      kept.doubtful = true;
+    }
+    if (!kept.inside || is_near(index)) return;
+    const PairFrame& frame = memory_.frames[index];
+    SearchScratch& scratch = *memory_.search;
+    Witness best = kept.nearest;
+    if (best.known()) {
+      float distances[kBatch];
+      scratch.batch_a[0] = best.a;
+      scratch.batch_b[0] = best.b;
+      measure(*memory_.kernels, frame, scratch, pace_, 1, distances);
+      best.distance = distances[0];
+    }
+    for (std::uint32_t i = 0; i < frame.a->regions.size() && pace_.go_on(); ++i) {
+      const Reach reach{best.known() ? best.distance : kFarthest, 0};
+      const Bounds found = search(*memory_.kernels, frame, scratch, pace_, i, {}, reach);
+      if (found.best.known() && found.best.distance < reach.limit) best = found.best;
+    }
+    kept.nearest = best;
+    if (best.known()) activate(index, best);
+  }
+
+  bool is_near(std::uint32_t index) noexcept {
+    for (const Active& item : active()) {
+      if (item.pair == index && upper_of(item) < static_cast<float>(pair_of(item).delta)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Makes a witness known to the report.
+  void activate(std::uint32_t index, const Witness& witness) noexcept {
+    const std::uint32_t region = memory_.frames[index].a->region_triangles[witness.a].region;
+    const std::uint32_t state = memory_.first_state[index] + region;
+    memory_.states[state].witness = witness;
+    for (const Active& item : active()) {
+      if (item.state == state) return;
+    }
+    const auto rest = static_cast<float>(memory_.pairs[index].delta);
+    memory_.active[count_++] = {.rest = rest, .state = state, .region = region, .pair = index};
   }
 
   void refine() noexcept {

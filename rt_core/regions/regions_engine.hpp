@@ -13,6 +13,7 @@
 #include "rt_core/convex/penetration.hpp"
 #include "rt_core/levels/body_pair.hpp"
 #include "rt_core/palpate_rt.hpp"
+#include "rt_core/regions/containment.hpp"
 #include "rt_core/regions/crossing.hpp"
 #include "rt_core/regions/kernels.hpp"
 #include "rt_core/regions/region_state.hpp"
@@ -37,6 +38,7 @@ struct QueryMemory {
   const Kernels* kernels = nullptr;
   std::span<levels::PairState> pairs;
   std::span<PairFrame> frames;           ///< [pairs]
+  std::span<Containment> containment;    ///< [pairs]
   std::span<std::uint32_t> first_state;  ///< [pairs], into states
   std::span<RegionState> states;         ///< [sum over pairs of the regions of a]
   std::span<Active> active;              ///< [states]

@@ -26,7 +26,8 @@ class Report {
     for (std::uint32_t i = 0; i < active_.size(); ++i) {
       const Active& item = active_[i];
       const Witness& witness = state_of(item).witness;
-      if (witness.known() && witness.distance < static_cast<float>(pair_of(item).delta)) {
+      const bool near = witness.distance < static_cast<float>(pair_of(item).delta);
+      if (witness.known() && (near || is_way_out(item))) {
         batch[pending++] = i;
       }
       if (pending == kBatch || (i + 1 == active_.size() && pending > 0)) {
@@ -38,6 +39,10 @@ class Report {
 
  private:
   const PairState& pair_of(const Active& item) noexcept { return memory_.pairs[item.pair]; }
+  bool is_way_out(const Active& item) noexcept {
+    const Containment& kept = memory_.containment[item.pair];
+    return kept.inside && kept.nearest.known() && kept.nearest.same_pair(state_of(item).witness);
+  }
   const RegionState& state_of(const Active& item) noexcept { return memory_.states[item.state]; }
 
   void report_batch(const std::uint32_t (&batch)[kBatch], std::uint32_t count) noexcept {
@@ -93,9 +98,12 @@ class Report {
     const double distance = norm(apart);
     constexpr double kTouching = 1e-9;  // a direction of so short a vector is rounding
     const Vec3d normal = distance > kTouching ? (1 / distance) * apart : facing(pair, witness);
-    add(item,
-        {on_a, on_a - apart, normal, distance, pair.image_a->region_triangles[witness.a].piece,
-         pair.image_b->region_triangles[witness.b].piece});
+    // Touching, the outward normal of b's is right whichever side a comes from.
+    const bool flip = memory_.containment[item.pair].inside && distance > kTouching;
+    const double side = flip ? -1 : 1;
+    add(item, {on_a, on_a - apart, side * normal, side * distance,
+               pair.image_a->region_triangles[witness.a].piece,
+               pair.image_b->region_triangles[witness.b].piece});
   }
 
   /// Where two triangles touch: the outward normal of b's.

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/bench/regions_scenes.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "host_bake/bake.hpp"
+#include "host_bake/mesh/check.hpp"
+#include "host_bake/models/models.hpp"
+
+namespace palpate::bench {
+
+std::uint64_t processor_ns(void*) {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<std::uint64_t>(t.tv_sec) * 1'000'000'000 +
+         static_cast<std::uint64_t>(t.tv_nsec);
+}
+
+Body::Body(const char* model, double delta_rel) : mesh(bake::make_model(model)) {
+  bake::BakeOptions options;
+  options.engine = bake::ForEngine::regions;
+  options.delta_rel = delta_rel;
+  bake::BakeReport report;
+  image =
+      std::make_unique<bake::AlignedCopy>(bake::bake(mesh, bake::check(mesh), options, {}, report));
+  if (validate(image->bytes(), view) != Status::ok) std::abort();
+}
+
+namespace {
+
+constexpr Limits kLimits{};
+
+}  // namespace
+
+Bench::Bench(const Body& a, const Body& b, double delta_m) : views_{a.view, b.view} {
+  settings_.engine = EngineKind::regions;
+  settings_.delta_m = delta_m;
+  bytes_ = required_bytes(scene(), kLimits, EngineKind::regions);
+  memory_.reset(new (std::align_val_t(64)) std::byte[bytes_]);
+  forget();
+}
+
+void Bench::forget() {
+  if (create(scene(), settings_, kLimits, {memory_.get(), bytes_}, engine_) != Status::ok) {
+    std::abort();
+  }
+}
+
+Vec3d Bench::summed_force(const TickResult& r) const {
+  Vec3d sum{};
+  for (const Contact& c : r.contacts) {
+    sum += (settings_.stiffness_N_per_m * (settings_.delta_m - c.distance_m)) * c.normal;
+  }
+  return sum;
+}
+
+TickResult Bench::tick_at(const Pose& pose, double budget_us) {
+  const Pose poses[2] = {pose, {}};
+  Budget budget;
+  if (budget_us > 0) {
+    budget.clock_ns = processor_ns;
+    budget.deadline_ns = processor_ns() + static_cast<std::uint64_t>(budget_us * 1e3);
+  }
+  TickResult result;
+  if (tick(*engine_, poses, budget, result) != Status::ok) std::abort();
+  return result;
+}
+
+namespace {
+
+Vec3d centre_of(const Body& body) {
+  const double* c = body.view.header->centre_m;
+  return {c[0], c[1], c[2]};
+}
+
+Quat turned(double x, double y, double z) {
+  const double n = std::sqrt(1 + x * x + y * y + z * z);
+  return {1 / n, x / n, y / n, z / n};
+}
+
+/// Distance at a pose, or `most`.
+double distance_at(Bench& wide, const Pose& pose, double most) {
+  const TickResult r = wide.tick_at(pose);
+  return r.contacts.empty() ? most : r.min_distance_m;
+}
+
+/// Moves against `out` until 0.4 delta is left.
+Pose brought_near(Bench& wide, Pose pose, Vec3d out, double delta, double reach) {
+  for (int k = 0; k < 60; ++k) {
+    const double step = distance_at(wide, pose, reach) - 0.4 * delta;
+    pose.position_m -= step * out;
+    if (std::abs(step) < 1e-3 * delta) break;
+  }
+  return pose;
+}
+
+Pose sliding(Bench& wide, const Body& a, const Body& b, double delta, double reach, int i) {
+  const double u = 0.0035 * i;
+  const double height = std::sin(0.3 * u);
+  const Vec3d out{std::cos(u) * std::cos(0.3 * u), std::sin(u) * std::cos(0.3 * u), height};
+  Pose pose{{}, turned(0.3 * std::sin(0.5 * u), 0.5 * u, 0.2 * u)};
+  const double apart = a.view.header->radius_m + b.view.header->radius_m;
+  pose.position_m = centre_of(b) + apart * out - rotation(pose.orientation) * centre_of(a);
+  return brought_near(wide, pose, out, delta, reach);
+}
+
+/// Half a turn about y, small turns and shifts, then down.
+Pose upon_tips(Bench& wide, const Body& a, const Body& b, double delta, double reach, int i) {
+  const double u = 0.0035 * i;
+  const double radius = b.view.header->radius_m;
+  const Quat small = turned(0.02 * std::sin(2 * u), 0.02 * std::sin(3 * u), 0.03 * std::sin(u));
+  Pose pose{{}, {-small.y, -small.z, small.w, small.x}};
+  pose.position_m = centre_of(b) - rotation(pose.orientation) * centre_of(a) +
+                    radius * Vec3d{0.15 * std::sin(u), 0.15 * std::sin(1.7 * u + 1), 1.2};
+  return brought_near(wide, pose, {0, 0, 1}, delta, reach);
+}
+
+/// Small turns where it lies, pressed in a turning direction until about 0.1 delta is left.
+Pose pressed(Bench& wide, const Body& a, double delta, int i) {
+  const double u = 0.0035 * i;
+  const Vec3d to{0.7 * std::cos(7 * u), 0.7 * std::sin(7 * u), std::cos(2 * u)};
+  Pose pose{{},
+            turned(8e-4 * std::sin(2 * u), 6e-4 * std::sin(3 * u + 1), 1e-3 * std::sin(1.3 * u))};
+  pose.position_m = centre_of(a) - rotation(pose.orientation) * centre_of(a);
+  double step = 0.3 * delta / norm(to);
+  for (int k = 0; k < 14; ++k) {
+    Pose next = pose;
+    next.position_m += step * to;
+    if (distance_at(wide, next, delta) > 0.1 * delta) {
+      pose = next;
+    } else {
+      step *= 0.5;
+    }
+  }
+  return pose;
+}
+
+}  // namespace
+
+std::vector<Pose> poses_of(const SceneName& scene, const Body& a, const Body& b, double delta,
+                           int ticks) {
+  const double radius = std::min(a.view.header->radius_m, b.view.header->radius_m);
+  const double reach = scene.motion == Motion::pressed ? delta : 0.3 * radius;
+  Bench wide(a, b, reach);
+  std::vector<Pose> poses;
+  poses.reserve(static_cast<std::size_t>(ticks));
+  for (int i = 0; i < ticks; ++i) {
+    switch (scene.motion) {
+      case Motion::sliding:
+        poses.push_back(sliding(wide, a, b, delta, reach, i));
+        break;
+      case Motion::tips:
+        poses.push_back(upon_tips(wide, a, b, delta, reach, i));
+        break;
+      case Motion::pressed:
+        poses.push_back(pressed(wide, a, delta, i));
+        break;
+    }
+  }
+  return poses;
+}
+
+}  // namespace palpate::bench
