@@ -12,6 +12,8 @@
 // force; force_step is the largest change of force from tick to tick. Where FCL is installed, its
 // distance of the same meshes (one least distance, OBBRSS) is asked between the exact ticks, pose
 // by pose; of_fcl is our time by its time, summed over the run.
+#include <time.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -21,7 +23,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/bench/regions_scenes.hpp"
+#include "host_bake/models/models.hpp"
+#include "tools/bench/scenes.hpp"
 #if defined(PALPATE_BENCH_FCL)
 #include "tools/bench/mesh_fcl.hpp"
 #endif
@@ -31,15 +34,42 @@ namespace {
 
 constexpr int kSettled = 10;  // ticks after which a budgeted run counts
 
+constexpr SceneName kScenes[] = {{"jaws", "jaw_lower", "jaw_upper", true},
+                                 {"tips", "jaw_lower", "jaw_lower", false, true},
+                                 {"golf", "golf_ball", "golf_ball", false},
+                                 {"socket", "golf_ball", "golf_shell", true},
+                                 {"screw", "screw", "nut", true},
+                                 {"joint", "ball_joint_head", "ball_joint_cup", true}};
+
+std::uint64_t processor_ns(void* = nullptr) {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<std::uint64_t>(t.tv_sec) * 1'000'000'000 +
+         static_cast<std::uint64_t>(t.tv_nsec);
+}
+
+Budget within(double budget_us) {
+  Budget budget;
+  if (budget_us > 0) {
+    budget.clock_ns = processor_ns;
+    budget.deadline_ns = processor_ns() + static_cast<std::uint64_t>(budget_us * 1e3);
+  }
+  return budget;
+}
+
+/// Of all regions: what clusters make of them is the force stage's affair, and neighbours whose
+/// nearest point is a common one join a cluster or not by the last bit.
+Vec3d summed_force(const Settings& settings, const TickResult& r) {
+  Vec3d sum{};
+  for (const Contact& c : r.contacts) {
+    sum += (settings.stiffness_N_per_m * (settings.delta_m - c.distance_m)) * c.normal;
+  }
+  return sum;
+}
+
 double percentile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
 }
 
 struct Run {
@@ -76,27 +106,18 @@ Run run(Bench& bench, const std::vector<Pose>& poses, const Plan& plan) {
   for (const Pose& pose : poses) {
     if (plan.cold) bench.forget();
     const std::uint64_t start = processor_ns();
-    const TickResult r = bench.tick_at(pose, plan.budget_us);
+    const TickResult r = bench.tick_at(pose, within(plan.budget_us));
     out.us.push_back(static_cast<double>(processor_ns() - start) * 1e-3);
     out.contacts.push_back(static_cast<double>(r.contacts.size()));
     out.near.push_back(static_cast<double>(r.front_nodes));
     out.units.push_back(static_cast<double>(r.queries));
     out.bound_N.push_back(r.certificate.force_bound_N);
-    out.force_N.push_back(bench.summed_force(r));
+    out.force_N.push_back(summed_force(bench.settings(), r));
     if (plan.peer != nullptr) {
       out.fcl_us += peer_us(*plan.peer, pose) / static_cast<double>(poses.size());
     }
   }
   return out;
-}
-
-double nrmse(const std::vector<Vec3d>& forces, const std::vector<Vec3d>& truth, double peak) {
-  double sum = 0;
-  int count = 0;
-  for (std::size_t i = kSettled; i < forces.size(); ++i, ++count) {
-    sum += squared_norm(forces[i] - truth[i]);
-  }
-  return count > 0 && peak > 0 ? std::sqrt(sum / count) / peak : 0;
 }
 
 void print_row(const char* scene, double delta_rel, const Plan& plan, const Run& r,
@@ -110,7 +131,7 @@ void print_row(const char* scene, double delta_rel, const Plan& plan, const Run&
   std::printf("%s,%g,%s,%g,%.1f,%.1f,%.1f,%.0f,%.1f,%.1f,%.4f,%.4f,%.4f", scene, delta_rel,
               plan.cold ? "cold" : "warm", plan.budget_us, mean(r.us), percentile(r.us, 0.5),
               percentile(r.us, 0.99), mean(r.units), mean(r.near), mean(r.contacts),
-              nrmse(r.force_N, exact.force_N, peak), percentile(r.bound_N, 0.5) / peak,
+              nrmse(r.force_N, exact.force_N, kSettled), percentile(r.bound_N, 0.5) / peak,
               step / peak);
   if (r.fcl_us > 0) {
     std::printf(",%.1f,%.3f\n", r.fcl_us, mean(r.us) / r.fcl_us);
@@ -121,12 +142,12 @@ void print_row(const char* scene, double delta_rel, const Plan& plan, const Run&
 }
 
 void measure(const SceneName& scene, double delta_rel, int ticks) {
-  const Body a(scene.a, delta_rel);
-  const Body b(scene.b, delta_rel);
+  const Body a(scene.a, delta_rel, bake::ForEngine::regions);
+  const Body b(scene.b, delta_rel, bake::ForEngine::regions);
   const double delta = delta_rel * std::min(a.view.header->radius_m, b.view.header->radius_m);
-  const std::vector<Pose> poses = poses_of(scene, a, b, delta, ticks);
-  const Peer peer(a.mesh, b.mesh);
-  Bench bench(a, b, delta);
+  const std::vector<Pose> poses = motion(scene, a, b, delta, ticks);
+  const Peer peer(bake::make_model(scene.a), bake::make_model(scene.b));
+  Bench bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
   const Run exact = run(bench, poses, {.peer = &peer});
   print_row(scene.name, delta_rel, {}, exact, exact);
   std::vector<Plan> plans{{.cold = true}};

@@ -1,76 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/bench/regions_scenes.hpp"
-
-#include <time.h>
+#include "tools/bench/scenes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
-#include "host_bake/bake.hpp"
 #include "host_bake/mesh/check.hpp"
 #include "host_bake/models/models.hpp"
 
 namespace palpate::bench {
-
-std::uint64_t processor_ns(void*) {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<std::uint64_t>(t.tv_sec) * 1'000'000'000 +
-         static_cast<std::uint64_t>(t.tv_nsec);
-}
-
-Body::Body(const char* model, double delta_rel) : mesh(bake::make_model(model)) {
-  bake::BakeOptions options;
-  options.engine = bake::ForEngine::regions;
-  options.delta_rel = delta_rel;
-  bake::BakeReport report;
-  image =
-      std::make_unique<bake::AlignedCopy>(bake::bake(mesh, bake::check(mesh), options, {}, report));
-  if (validate(image->bytes(), view) != Status::ok) std::abort();
-}
-
 namespace {
 
-constexpr Limits kLimits{};
-
-}  // namespace
-
-Bench::Bench(const Body& a, const Body& b, double delta_m) : views_{a.view, b.view} {
-  settings_.engine = EngineKind::regions;
-  settings_.delta_m = delta_m;
-  bytes_ = required_bytes(scene(), kLimits, EngineKind::regions);
-  memory_.reset(new (std::align_val_t(64)) std::byte[bytes_]);
-  forget();
-}
-
-void Bench::forget() {
-  if (create(scene(), settings_, kLimits, {memory_.get(), bytes_}, engine_) != Status::ok) {
-    std::abort();
-  }
-}
-
-Vec3d Bench::summed_force(const TickResult& r) const {
-  Vec3d sum{};
-  for (const Contact& c : r.contacts) {
-    sum += (settings_.stiffness_N_per_m * (settings_.delta_m - c.distance_m)) * c.normal;
-  }
-  return sum;
-}
-
-TickResult Bench::tick_at(const Pose& pose, double budget_us) {
-  const Pose poses[2] = {pose, {}};
-  Budget budget;
-  if (budget_us > 0) {
-    budget.clock_ns = processor_ns;
-    budget.deadline_ns = processor_ns() + static_cast<std::uint64_t>(budget_us * 1e3);
-  }
-  TickResult result;
-  if (tick(*engine_, poses, budget, result) != Status::ok) std::abort();
-  return result;
-}
-
-namespace {
+constexpr Limits kLimits{.nodes = 1u << 19, .contacts = 1u << 16};
 
 Vec3d centre_of(const Body& body) {
   const double* c = body.view.header->centre_m;
@@ -141,27 +82,65 @@ Pose pressed(Bench& wide, const Body& a, double delta, int i) {
 
 }  // namespace
 
-std::vector<Pose> poses_of(const SceneName& scene, const Body& a, const Body& b, double delta,
-                           int ticks) {
+Body::Body(const char* model, double delta_rel, bake::ForEngine engine) {
+  const bake::Mesh mesh = bake::make_model(model);
+  bake::BakeOptions options;
+  options.engine = engine;
+  options.delta_rel = delta_rel;
+  bake::BakeReport report;
+  image =
+      std::make_unique<bake::AlignedCopy>(bake::bake(mesh, bake::check(mesh), options, {}, report));
+  if (validate(image->bytes(), view) != Status::ok) std::abort();
+}
+
+Bench::Bench(const Body& a, const Body& b, const Settings& settings)
+    : views_{a.view, b.view}, settings_(settings) {
+  bytes_ = required_bytes(scene(), kLimits, settings_.engine);
+  memory_.reset(new (std::align_val_t(64)) std::byte[bytes_]);
+  forget();
+}
+
+void Bench::forget() {
+  if (create(scene(), settings_, kLimits, {memory_.get(), bytes_}, engine_) != Status::ok) {
+    std::abort();
+  }
+}
+
+TickResult Bench::tick_at(const Pose& pose, const Budget& budget) {
+  const Pose poses[2] = {pose, {}};
+  TickResult result;
+  if (tick(*engine_, poses, budget, result) != Status::ok) std::abort();
+  return result;
+}
+
+std::vector<Pose> motion(const SceneName& scene, const Body& a, const Body& b, double delta_m,
+                         int ticks) {
   const double radius = std::min(a.view.header->radius_m, b.view.header->radius_m);
-  const double reach = scene.motion == Motion::pressed ? delta : 0.3 * radius;
-  Bench wide(a, b, reach);
+  const double reach = scene.interlock ? delta_m : 0.3 * radius;
+  Bench wide(a, b, {.engine = EngineKind::regions, .delta_m = reach});
   std::vector<Pose> poses;
   poses.reserve(static_cast<std::size_t>(ticks));
   for (int i = 0; i < ticks; ++i) {
-    switch (scene.motion) {
-      case Motion::sliding:
-        poses.push_back(sliding(wide, a, b, delta, reach, i));
-        break;
-      case Motion::tips:
-        poses.push_back(upon_tips(wide, a, b, delta, reach, i));
-        break;
-      case Motion::pressed:
-        poses.push_back(pressed(wide, a, delta, i));
-        break;
-    }
+    poses.push_back(scene.interlock     ? pressed(wide, a, delta_m, i)
+                    : scene.upside_down ? upon_tips(wide, a, b, delta_m, reach, i)
+                                        : sliding(wide, a, b, delta_m, reach, i));
   }
   return poses;
+}
+
+double nrmse(const std::vector<Vec3d>& forces, const std::vector<Vec3d>& truth, std::size_t first) {
+  double peak = 0;
+  for (const Vec3d& force : truth) peak = std::max(peak, norm(force));
+  double sum = 0;
+  for (std::size_t i = first; i < forces.size(); ++i) sum += squared_norm(forces[i] - truth[i]);
+  if (forces.size() <= first || peak == 0) return 0;
+  return std::sqrt(sum / static_cast<double>(forces.size() - first)) / peak;
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
 }
 
 }  // namespace palpate::bench
