@@ -15,7 +15,7 @@ using Model = fcl::BVHModel<fcl::OBBRSS<double>>;
 void fill(const bake::Mesh& mesh, Model& model) {
   std::vector<fcl::Vector3<double>> points;
   points.reserve(mesh.points.size());
-  for (const Vec3d& p : mesh.points) points.emplace_back(p.x, p.y, p.z);
+  for (const bake::Point& p : mesh.points) points.emplace_back(p[0], p[1], p[2]);
   std::vector<fcl::Triangle> triangles;
   triangles.reserve(mesh.faces.size());
   for (const bake::Face& f : mesh.faces) triangles.emplace_back(f[0], f[1], f[2]);
