@@ -21,6 +21,8 @@ constexpr Mat3d kRays[] = {{{0.8, -0.6, 0.0}, {0.36, 0.48, -0.8}, {0.48, 0.64, 0
                            {{0.28, 0.96, 0.0}, {-0.768, 0.224, -0.6}, {-0.576, 0.168, 0.8}},
                            {{-0.6, 0.0, 0.8}, {0.64, -0.6, 0.48}, {0.48, 0.8, 0.36}}};
 
+bool is_one(const ImageView& body) noexcept { return body.header->source_components == 1; }
+
 Vec3d vec(const float* p) noexcept {
   return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
@@ -107,7 +109,7 @@ class Ray {
 Side side_of(const Kernels& kernels, const ImageView& body, Vec3d point, SearchScratch& scratch,
              Pace& pace) noexcept {
   if ((body.header->flags & static_cast<std::uint32_t>(image::HeaderFlag::open)) != 0) {
-    return Side::unknown;
+    return Side::outside;
   }
   if (squared_norm(point) > kMostReach * kMostReach) return Side::outside;
   for (const Mat3d& axes : kRays) {
@@ -121,15 +123,18 @@ Side contained(const Kernels& kernels, const levels::PairState& pair, SearchScra
                Pace& pace) noexcept {
   const Mat3d& r = pair.b_in_a.rotation;
   const Vec3d t = pair.b_in_a.translation;
-  const Vec3d of_a = pair.scale_a * vec(pair.image_a->region_triangles[0].corners);
-  const Vec3d in_b = (1.0 / pair.scale_b) * (transpose(r) * (of_a - t));
-  const Side a_in_b = side_of(kernels, *pair.image_b, in_b, scratch, pace);
-  if (a_in_b == Side::inside) return Side::inside;
-  const Vec3d of_b = pair.scale_b * vec(pair.image_b->region_triangles[0].corners);
-  const Vec3d in_a = (1.0 / pair.scale_a) * (r * of_b + t);
-  const Side b_in_a = side_of(kernels, *pair.image_a, in_a, scratch, pace);
-  if (b_in_a == Side::inside) return Side::inside;
-  return a_in_b == Side::outside && b_in_a == Side::outside ? Side::outside : Side::unknown;
+  if (is_one(*pair.image_a)) {
+    const Vec3d of_a = pair.scale_a * vec(pair.image_a->region_triangles[0].corners);
+    const Vec3d in_b = (1.0 / pair.scale_b) * (transpose(r) * (of_a - t));
+    const Side side = side_of(kernels, *pair.image_b, in_b, scratch, pace);
+    if (side != Side::outside) return side;
+  }
+  if (is_one(*pair.image_b)) {
+    const Vec3d of_b = pair.scale_b * vec(pair.image_b->region_triangles[0].corners);
+    const Vec3d in_a = (1.0 / pair.scale_a) * (r * of_b + t);
+    return side_of(kernels, *pair.image_a, in_a, scratch, pace);
+  }
+  return Side::outside;
 }
 
 }  // namespace palpate::regions

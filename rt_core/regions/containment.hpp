@@ -23,13 +23,14 @@ struct Containment {
 /// the same numbers; a ray that meets an edge exactly is given up for another direction. A surface
 /// that faces inwards, a room, has no inside.
 /// @param point  image coordinates of the body
-/// Unknown where the surface is open, or the budget or all directions are used up. Cost: a unit for
-/// each node whose box the ray passes through, for at most three rays.
+/// An open surface has no inside either. Unknown where the budget or all directions are used up.
+/// Cost: a unit for each node whose box the ray passes through, for at most three rays.
 [[nodiscard]] Side side_of(const Kernels& kernels, const ImageView& body, Vec3d point,
                            SearchScratch& scratch, Pace& pace) noexcept;
 
 /// Side::inside where a vertex of one body is inside the other, for bodies whose triangles do not
-/// cross: then its whole component is. Other components are not looked at.
+/// cross: then the whole body is. A body of several components is not asked for: its vertex would
+/// not speak for all of it.
 [[nodiscard]] Side contained(const Kernels& kernels, const levels::PairState& pair,
                              SearchScratch& scratch, Pace& pace) noexcept;
 

@@ -6,8 +6,7 @@
 namespace palpate::regions {
 namespace {
 
-/// Rounding of the centres and of the odometer, in units, and of the radius.
-constexpr double kMotionSlack = 1e-9;
+/// Rounding of the radius, and of the axes that it is a length along.
 constexpr double kRadiusSlack = 1 + 1e-5;
 
 /// Of a region, in the coordinates of b.
@@ -36,6 +35,7 @@ void prove(RegionState& state, const levels::PairState& pair, std::uint32_t regi
   state.rest = rest;
   state.lower = nearest < rest ? nearest : rest;
   state.centre = centre_of(pair, region);
+  state.travel_at = pair.travel;
   state.turn_at = pair.turn;
 }
 

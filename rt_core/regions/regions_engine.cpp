@@ -111,6 +111,7 @@ class Query {
     const auto regions = pair.image_a->regions;
     for (std::uint32_t i = 0; i < regions.size(); ++i) {
       const RegionState& state = memory_.states[first + i];
+      if (static_cast<double>(state.lower) - way_since(state, pair) >= pair.delta) continue;
       const double moved_by = moved_since(state, pair, i);
       if (static_cast<double>(state.lower) - moved_by >= pair.delta) continue;
       Active& item = memory_.active[count_++];

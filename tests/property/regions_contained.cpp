@@ -90,6 +90,22 @@ TEST(RegionsContained, rooms_and_open_surfaces_have_no_inside) {
   }
 }
 
+TEST(RegionsContained, wall_of_a_shell_is_inside_and_its_cavity_is_not) {
+  const BakedBody small(ball(6, 8, 0.04), kRegions);
+  bake::Mesh shell = ball(12, 16, 1);
+  const bake::Mesh cavity = inside_out(ball(12, 16, 0.7));
+  const auto first = static_cast<std::uint32_t>(shell.points.size());
+  shell.points.insert(shell.points.end(), cavity.points.begin(), cavity.points.end());
+  for (const bake::Face& f : cavity.faces) {
+    shell.faces.push_back({f[0] + first, f[1] + first, f[2] + first});
+  }
+  const BakedBody around(std::move(shell), kRegions);
+  BakedScene scene({small.view, around.view}, {{0, 1}}, settings());
+  EXPECT_TRUE(tick_at(scene, {0.02, 0.03, 0.01}).contacts.empty());
+  expect_pushed_out(tick_at(scene, {0.9, 0.01, 0.02}), {1, 0, 0});
+  expect_pushed_out(tick_at(scene, {0.78, 0.01, 0.02}), {-1, 0, 0});
+}
+
 TEST(RegionsContained, side_of_a_point_is_that_of_the_shape) {
   const BakedBody body(bumpy_ball(24, 30, 1), kRegions);
   const double radius = body.view.header->radius_m;

@@ -218,6 +218,7 @@ TEST(RegionState, no_point_moves_farther_than_is_said) {
       const auto& t = bodies().a.view.region_triangles[i];
       if (t.region != region) continue;
       ASSERT_LE(norm(place(t) - before[i]), most);
+      ASSERT_LE(norm(place(t) - before[i]), regions::way_since(state, at.pair));
     }
   }
 }
