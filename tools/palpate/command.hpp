@@ -61,6 +61,7 @@ void add_run(CLI::App& app);
 void add_report(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_flash(CLI::App& app);
+void add_key(CLI::App& app);
 void add_doctor(CLI::App& app);
 
 }  // namespace palpate::cli
