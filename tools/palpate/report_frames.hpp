@@ -36,9 +36,9 @@ struct Frames {
   [[nodiscard]] std::vector<float> peak(Value value) const {
     std::vector<float> out;
     for (std::size_t f = 0; f < count; ++f) {
-      double most = value(tick(f));
+      auto most = static_cast<double>(value(tick(f)));
       for (std::size_t t = tick(f) + 1; t < std::min(tick(f + 1), ticks); ++t) {
-        most = std::max(most, double(value(t)));
+        most = std::max(most, static_cast<double>(value(t)));
       }
       out.push_back(static_cast<float>(most));
     }
