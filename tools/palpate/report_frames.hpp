@@ -27,6 +27,7 @@ struct Frames {
   template <class Value>
   [[nodiscard]] std::vector<float> sample(Value value) const {
     std::vector<float> out;
+    out.reserve(count);
     for (std::size_t f = 0; f < count; ++f) out.push_back(static_cast<float>(value(tick(f))));
     return out;
   }
@@ -35,6 +36,7 @@ struct Frames {
   template <class Value>
   [[nodiscard]] std::vector<float> peak(Value value) const {
     std::vector<float> out;
+    out.reserve(count);
     for (std::size_t f = 0; f < count; ++f) {
       auto most = static_cast<double>(value(tick(f)));
       for (std::size_t t = tick(f) + 1; t < std::min(tick(f + 1), ticks); ++t) {

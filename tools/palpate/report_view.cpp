@@ -105,6 +105,7 @@ std::vector<std::string> packed_tracks(const ReportScene& view, const Frames& fr
     }
   }
   std::vector<std::string> out;
+  out.reserve(tracks.size());
   for (const std::vector<float>& track : tracks) out.push_back(packed(track));
   return out;
 }
@@ -115,6 +116,7 @@ const char* role_name(config::Role role) {
 
 std::vector<Vec3f> to_floats(const std::vector<Vec3d>& vectors) {
   std::vector<Vec3f> out;
+  out.reserve(vectors.size());
   for (const Vec3d v : vectors) {
     out.push_back({static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)});
   }

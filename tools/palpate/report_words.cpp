@@ -30,6 +30,7 @@ std::string full_name(const SweepPoint& p) { return p.engine + " (" + p.words + 
 template <class Value>
 double quantile_of(const std::vector<TickRow>& ticks, double share, Value value) {
   std::vector<double> values;
+  values.reserve(ticks.size());
   for (const TickRow& row : ticks) values.push_back(value(row));
   return quantile(std::move(values), share);
 }
