@@ -11,6 +11,7 @@
 #include "tests/support/virtual_loop.hpp"
 #include "tools/realtime/coupled_query.hpp"
 #include "tools/realtime/engine_query.hpp"
+#include "tools/realtime/steady_query.hpp"
 
 namespace palpate::test {
 namespace {
@@ -67,9 +68,10 @@ TEST_P(EnergyOfTheLoop, is_never_given_out) {
   BakedScene scene({tool.view, other.view}, {{0, 1}}, {});
   const Pose poses[2] = {};
   realtime::EngineQuery contacts(*scene.engine, poses, 0);
+  realtime::SteadyQuery steady(contacts, {}, 1 / kRate_Hz);
   realtime::CoupledQuery coupled(contacts, {}, 1 / kRate_Hz);
   realtime::ContactQuery& query =
-      GetParam().coupled ? static_cast<realtime::ContactQuery&>(coupled) : contacts;
+      GetParam().coupled ? static_cast<realtime::ContactQuery&>(coupled) : steady;
 
   hal::mock::HandParameters hand;
   hand.script = random_script(place);
