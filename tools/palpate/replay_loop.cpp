@@ -2,6 +2,7 @@
 #include "tools/palpate/replay_loop.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "hal/clock.hpp"
@@ -21,8 +22,8 @@ class Replay {
         engine_(scene),
         unlimited_(!options.budget_units && !scene.budget_us) {
     if (options.budget_units) budget_.units = *options.budget_units;
-    if (scene.budget_us) {
-      budget_ns_ = static_cast<std::uint64_t>(*scene.budget_us * 1e3);
+    if (scene.budget_us) budget_ns_ = static_cast<std::uint64_t>(*scene.budget_us * 1e3);
+    if (budget_ns_ || options.profile) {
       budget_.clock_ns = [](void* clock) { return static_cast<hal::Clock*>(clock)->now_ns(); };
       budget_.clock_context = static_cast<hal::Clock*>(&clock_);
     }
@@ -47,7 +48,7 @@ class Replay {
     return rows;
   }
 
-  [[nodiscard]] const SceneEngine& engine() const { return engine_; }
+  [[nodiscard]] SceneEngine& engine() { return engine_; }
 
  private:
   TickResult complete_tick(std::size_t i, std::span<const Pose> poses, std::uint64_t& out_ns) {
@@ -61,7 +62,8 @@ class Replay {
   TickResult timed_tick(std::size_t i, std::span<const Pose> poses, std::uint64_t& out_ns) {
     TickResult result;
     const std::uint64_t start_ns = clock_.now_ns();
-    budget_.deadline_ns = start_ns + budget_ns_;
+    budget_.deadline_ns =
+        budget_ns_ ? start_ns + *budget_ns_ : std::numeric_limits<std::uint64_t>::max();
     const Status status = tick(engine_.engine(), poses, budget_, result);
     out_ns = clock_.now_ns() - start_ns;
     if (status != Status::ok) {
@@ -88,7 +90,7 @@ class Replay {
   bool unlimited_;
   hal::MonotonicClock clock_;
   Budget budget_;
-  std::uint64_t budget_ns_ = 0;
+  std::optional<std::uint64_t> budget_ns_;
 };
 
 }  // namespace
@@ -114,6 +116,8 @@ Recording replay(const config::Scene& scene, const PoseTrack& track, const Repla
   }
   out.image_bytes = loop.engine().image_bytes();
   out.engine_bytes = loop.engine().engine_bytes();
+  out.limits = loop.engine().limits();
+  if (const Counters* counted = counters(loop.engine().engine())) out.counters = *counted;
   return out;
 }
 

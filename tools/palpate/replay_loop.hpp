@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "config/scene.hpp"
+#include "rt_core/counters.hpp"
 #include "tools/palpate/poses.hpp"
 #include "tools/palpate/replay_csv.hpp"
 
@@ -18,6 +19,7 @@ namespace palpate::cli {
 struct ReplayOptions {
   std::optional<std::uint64_t> budget_units;  ///< beside the scene's budget_us; absent: unlimited
   unsigned repeat = 1;                        ///< >= 1
+  bool profile = false;                       ///< give the engine a clock, for its stages' times
 };
 
 /// What a replay tells while it runs; each may be empty.
@@ -32,6 +34,8 @@ struct Recording {
   std::vector<TickRow> ticks;
   std::size_t image_bytes = 0;
   std::size_t engine_bytes = 0;
+  Limits limits;                     ///< the scene's, or what it took
+  std::optional<Counters> counters;  ///< absent where the engine counts nothing
 };
 
 /// Replays the track options.repeat times, each with a new engine, so that all repetitions do the
