@@ -55,6 +55,21 @@ double count_near(const Work& work) noexcept {
   return near;
 }
 
+/// Every ancestor gets the nearest contact below it, so that none is lost to a cut.
+void carry_contacts_up(Work& work) noexcept {
+  for (const std::uint32_t index : work.tree.front()) {
+    const Node& node = work.tree[index];
+    if (node.contact == 0) continue;
+    const PairState& pair = work.pair_of(node);
+    const double distance = remeasured(pair, node).distance;
+    for (std::uint32_t p = node.parent; p != kNone; p = work.tree[p].parent) {
+      Node& above = work.tree[p];
+      if (above.contact != 0 && remeasured(pair, above).distance <= distance) break;
+      hand_over(node, above);
+    }
+  }
+}
+
 /// Every near front node gives way to its parent. False where all are roots.
 bool raise_near(Work& work) noexcept {
   bool raised = false;
@@ -68,11 +83,16 @@ bool raise_near(Work& work) noexcept {
   return raised;
 }
 
+bool is_affordable(const Work& work, double most) noexcept {
+  return static_cast<double>(work.tree.front().size()) <= most || count_near(work) <= most;
+}
+
 void cut_back(Work& work) noexcept {
   const double most = kFrontOverBudget * work.meter.queries_affordable(work.memory.query_ns);
+  if (is_affordable(work, most)) return;
+  carry_contacts_up(work);
   for (std::uint32_t round = 0; round < 2 * image::kMaxLevels; ++round) {
-    if (static_cast<double>(work.tree.front().size()) <= most || count_near(work) <= most) return;
-    if (!raise_near(work)) return;
+    if (!raise_near(work) || is_affordable(work, most)) return;
   }
 }
 
