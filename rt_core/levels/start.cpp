@@ -9,6 +9,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// roots: an old front says nothing about a far pose.
 constexpr double kJumpRadius = 0.05;
 constexpr double kJumpDelta = 2;
+/// Of the distance of two spheres, in units.
+constexpr double kSphereRounding = 1e-9;
 /// The front may be this much larger than what the budget is expected to measure: the estimate
 /// wavers, and a front that is cut back every other tick would be felt.
 constexpr double kFrontOverBudget = 1.25;
@@ -46,6 +48,18 @@ void place(Work& work, PairState& pair) noexcept {
   } else if (work.rules.root_short_cut) {
     rise_if_apart(work, pair);
   }
+}
+
+/// Where the motion bound has run out the spheres may still do: they cost no query.
+void renew(Work& work, Node& node) noexcept {
+  const PairState& pair = work.pair_of(node);
+  if (!work.rules.motion_bounds) return begin(pair, node, -kInfinity);
+  if (!work.is_near(node)) return;
+  const double spheres = sphere_distance(pair, piece_a(pair, node), piece_b(pair, node));
+  if (spheres < pair.delta + kSphereRounding) return;
+  prove(pair, node, spheres - kSphereRounding);
+  set_rest(pair, node, spheres - kSphereRounding);
+  node.contact = 0;
 }
 
 double count_near(const Work& work) noexcept {
@@ -105,7 +119,7 @@ void start(Work& work) noexcept {
     Node& node = work.tree[index];
     clear(node, kOfThisTick);
     node.report = kNone;
-    if (!work.rules.motion_bounds) begin(work.pair_of(node), node, -kInfinity);
+    renew(work, node);
     wait_if_near(work, index);
   }
 }
