@@ -60,6 +60,7 @@ void add_replay(CLI::App& app);
 void add_run(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_flash(CLI::App& app);
+void add_key(CLI::App& app);
 void add_doctor(CLI::App& app);
 
 }  // namespace palpate::cli
