@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "rt_core/palpate_rt.hpp"
 
@@ -39,6 +41,10 @@ struct ContactRow {
 
 /// The whole table, with its header.
 std::string ticks_csv(std::span<const TickRow> rows);
+
+/// The same numbers back from such a table; of what ended refinement only that something did
+/// (truncated_by_time stands for all). Nothing where the text is no such table or is cut short.
+std::optional<std::vector<TickRow>> ticks_from_csv(std::string_view text);
 
 /// Rows of a table that is too large to be held.
 std::string contact_rows(std::span<const ContactRow> rows);
