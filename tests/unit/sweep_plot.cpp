@@ -42,7 +42,7 @@ TEST(SvgPlot, Nothing_to_draw_and_a_single_value_have_axes_all_the_same) {
     const std::string svg = to_svg(panels);
     EXPECT_EQ(svg.find("nan"), std::string::npos);
     EXPECT_EQ(svg.find("inf"), std::string::npos);
-    EXPECT_GT(count(svg, "class='g'"), 8u);
+    EXPECT_GE(count(svg, "class='g'"), 8u);
   }
 }
 

@@ -115,7 +115,9 @@ std::optional<std::vector<TickRow>> ticks_from_csv(std::string_view text) {
   while (!text.empty()) {
     const std::size_t end = text.find('\n');
     if (end == std::string_view::npos) return std::nullopt;
-    if (!read(text.substr(0, end), rows.size(), rows.emplace_back())) return std::nullopt;
+    TickRow row;
+    if (!read(text.substr(0, end), rows.size(), row)) return std::nullopt;
+    rows.push_back(row);
     text.remove_prefix(end + 1);
   }
   return rows;
