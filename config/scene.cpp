@@ -131,11 +131,13 @@ class Loader {
         refuse("too many pairs", file_, row->source(), "leave it at " + std::to_string(kMaxPairs));
       }
       scene_.pairs.push_back(pair);
+      scene_.friction.push_back(names.friction);
     }
     if (!scene_.pairs.empty()) return;
     for (std::uint32_t i = 0; i < scene_.bodies.size(); ++i) {
       if (i != scene_.tool) scene_.pairs.push_back({scene_.tool, i});
     }
+    scene_.friction.assign(scene_.pairs.size(), 0);
   }
 
   [[nodiscard]] std::uint32_t find_body(const std::string& name, const toml::node& at) const {

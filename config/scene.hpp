@@ -74,12 +74,18 @@ struct Scene {
   double rate_Hz = 1000.0;          ///< [run]: of the real-time loop
   bool passivity_control = true;    ///< [run]: energy that the loop gives out is taken back
   std::optional<double> device_damping_N_s_per_m;  ///< [run]: of the device and the hand on it
+  std::optional<double> contact_rate_Hz;           ///< [run]; absent: every tick asks for contacts
   Coupling coupling = Coupling::direct;            ///< [force]
+  double contact_damping_N_s_per_m = 0;            ///< [force]
+  double max_force_slew_N_per_s = 2000;            ///< [force], of what is sent
+  double max_torque_slew_Nm_per_s = 60;            ///< [force], likewise
+  double max_power_W = 5;                          ///< [force], given to the hand
   force::CouplingSettings virtual_tool;            ///< [coupling]
   std::vector<Body> bodies;
-  std::vector<BodyPair> pairs;  ///< as written, or the tool against every other body
-  std::uint32_t tool = 0;       ///< index into bodies
-  MockHand hand;                ///< [mock]
+  std::vector<BodyPair> pairs;   ///< as written, or the tool against every other body
+  std::vector<double> friction;  ///< [pairs], coefficient of Coulomb friction; all 0: none
+  std::uint32_t tool = 0;        ///< index into bodies
+  MockHand hand;                 ///< [mock]
 };
 
 /// Reads and checks a scene file. Not readable, not TOML, unknown keys, wrong types, out-of-range

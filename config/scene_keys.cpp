@@ -70,6 +70,19 @@ constexpr Key<Scene> kForceKeys[] = {
     {"max_torque_Nm", "N m",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.max_torque_Nm; }, 0, kMost},
      "the torque on the tool is scaled down to this length"},
+    {"max_force_slew_N_per_s", "N/s",
+     Real<Scene>{[](Scene& s) -> double& { return s.max_force_slew_N_per_s; }, 0, kMost},
+     "`palpate run`: the force that is sent changes no faster"},
+    {"max_torque_slew_Nm_per_s", "N m/s",
+     Real<Scene>{[](Scene& s) -> double& { return s.max_torque_slew_Nm_per_s; }, 0, kMost},
+     "the same of the torque"},
+    {"max_power_W", "W", Real<Scene>{[](Scene& s) -> double& { return s.max_power_W; }, 0, kMost},
+     "`palpate run`: the wrench is scaled down where it would give the hand more; it goes before "
+     "the "
+     "slew"},
+    {"contact_damping_N_s_per_m", "N s/m",
+     Real<Scene>{[](Scene& s) -> double& { return s.contact_damping_N_s_per_m; }, 0, kMost},
+     "`palpate run`: contacts resist velocity too, in any one direction, with at most their force"},
     {"coupling", "",
      Choice<Scene>{kCouplings,
                    [](Scene& s, std::size_t i) { s.coupling = static_cast<Coupling>(i); },
@@ -113,6 +126,11 @@ constexpr Key<Scene> kLimitKeys[] = {
 constexpr Key<Scene> kRunKeys[] = {
     {"rate_Hz", "Hz", Real<Scene>{[](Scene& s) -> double& { return s.rate_Hz; }, 1, 20000},
      "rate of the real-time loop"},
+    {"contact_rate_Hz", "Hz",
+     OptionalReal<Scene>{[](Scene& s) -> std::optional<double>& { return s.contact_rate_Hz; }, 1,
+                         20000},
+     "contacts are asked for at this rate, on a thread of their own, and the loop renders their "
+     "linear model between; absent: every tick asks"},
     {"passivity_control", "", Flag<Scene>{[](Scene& s) -> bool& { return s.passivity_control; }},
      "a damper takes back the energy that the loop has given out of its own"},
     {"device_damping_N_s_per_m", "N s/m",
@@ -174,6 +192,8 @@ constexpr Key<PairNames> kPairKeys[] = {
      "name of a body; normals point towards it", true},
     {"b", "", Text<PairNames>{[](PairNames& p, const std::string& text) { p.b = text; }},
      "name of another body", true},
+    {"friction", "1", Real<PairNames>{[](PairNames& p) -> double& { return p.friction; }, 0, 1e6},
+     "`palpate run`: coefficient of Coulomb friction, with stick, where one of them is the tool"},
 };
 
 constexpr Table<Scene> kTables[] = {

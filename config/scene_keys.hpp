@@ -84,6 +84,7 @@ struct Table {
 /// A [[pair]] as written.
 struct PairNames {
   std::string a, b;
+  double friction = 0;
 };
 
 inline constexpr double kMaxPosition_m = 1e12;  ///< of each coordinate, either sign

@@ -49,6 +49,8 @@ const char* describe(Status s) noexcept {
       return "a pose is not finite or its quaternion not of unit length";
     case Status::image_too_coarse:
       return "the scene may need levels that were left out of an image";
+    case Status::answer_too_old:
+      return "no contact query has ended for too long";
   }
   return "unknown status";
 }

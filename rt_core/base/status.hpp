@@ -35,6 +35,7 @@ enum class [[nodiscard]] Status : std::uint16_t{
     /// the settings may refine to levels that were left out of an image: s0 below its s0_min, a
     /// partner with smaller support areas than its partner_area, exact, or kappa
     image_too_coarse = 103,
+    answer_too_old = 104,  ///< contacts are asked for on a thread of their own, and it has stopped
 };
 
 /// The name of a status, static storage, never null.

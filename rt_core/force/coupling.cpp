@@ -1,26 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/force/coupling.hpp"
 
+#include "rt_core/force/displacement.hpp"
+
 namespace palpate::force {
 namespace {
-
-/// 2 sin(angle / 2) along the axis that leads from one orientation to another.
-Vec3d turn_between(const Quat& from, const Quat& to) noexcept {
-  const Quat q = to * Quat{from.w, -from.x, -from.y, -from.z};
-  const double twice = q.w < 0 ? -2 : 2;  // the shorter way round
-  return twice * Vec3d{q.x, q.y, q.z};
-}
 
 Quat turned(const Quat& q, Vec3d angle_rad) noexcept {
   const Quat d = Quat{0, 0.5 * angle_rad.x, 0.5 * angle_rad.y, 0.5 * angle_rad.z} * q;
   const Quat sum{q.w + d.w, q.x + d.x, q.y + d.y, q.z + d.z};
   const double length = sqrt_of(sum.w * sum.w + sum.x * sum.x + sum.y * sum.y + sum.z * sum.z);
   return {sum.w / length, sum.x / length, sum.y / length, sum.z / length};
-}
-
-/// From one pose to another, as a twist times one second.
-Vec6 between(const Pose& from, const Pose& to) noexcept {
-  return vec6(to.position_m - from.position_m, turn_between(from.orientation, to.orientation));
 }
 
 }  // namespace
@@ -38,13 +28,13 @@ void VirtualTool::reset(const Pose& at) noexcept {
 Wrench VirtualTool::step(const Pose& handle, const Wrench& contact, const Matrix6& stiffness,
                          double period_s) noexcept {
   const CouplingSettings& s = settings_;
-  const Vec6 behind = between(pose_, handle);
-  const Vec6 moved = between(handle_before_, handle);
+  const Vec6 behind = displacement(pose_, handle);
+  const Vec6 moved = displacement(handle_before_, handle);
   handle_before_ = handle;
 
   const double t = period_s;
   Matrix6 m;
-  m.add(stiffness, t * t);
+  m.add(stiffness, t * (t + s.contact_damping_s));
   m.add_diagonal(s.mass_kg + t * damper_N_s_per_m_ + t * t * s.spring_N_per_m,
                  s.inertia_kg_m2 + t * damper_Nm_s_per_rad_ + t * t * s.spring_Nm_per_rad);
   Vec6 momentum = vec6(t * contact.force_N, t * contact.torque_Nm);
@@ -58,7 +48,7 @@ Wrench VirtualTool::step(const Pose& handle, const Wrench& contact, const Matrix
   pose_.position_m += t * linear(velocity_);
   pose_.orientation = turned(pose_.orientation, t * angular(velocity_));
 
-  const Vec6 ahead = between(handle, pose_);
+  const Vec6 ahead = displacement(handle, pose_);
   const Vec3d slip_m_per_s = linear(velocity_) - (1 / t) * linear(moved);
   const Vec3d slip_rad_per_s = angular(velocity_) - (1 / t) * angular(moved);
   return {s.spring_N_per_m * linear(ahead) + damper_N_s_per_m_ * slip_m_per_s,

@@ -10,12 +10,13 @@
 
 namespace palpate::force {
 
-/// All > 0.
+/// All > 0 but for the damping.
 struct CouplingSettings {
   double spring_N_per_m = 1000;
   double spring_Nm_per_rad = 1;
-  double mass_kg = 0.05;        ///< of the simulated tool
-  double inertia_kg_m2 = 2e-5;  ///< about its origin, every axis; its centre of mass is there
+  double mass_kg = 0.05;         ///< of the simulated tool
+  double inertia_kg_m2 = 2e-5;   ///< about its origin, every axis; its centre of mass is there
+  double contact_damping_s = 0;  ///< of the contacts, over their stiffness; >= 0
 };
 
 /// The simulated tool. The hand feels the spring and damper that tie it to the handle, and nothing
@@ -32,11 +33,12 @@ class VirtualTool {
 
   /// Moves on by one period and returns the wrench on the handle, about the handle's origin.
   ///
-  /// Backward Euler, linearised once: (M + T B + T^2 (K + Kc)) v1 = M v0 + T (w + wc + B vh), where
-  /// wc is the spring at the handle's present pose and vh the handle's velocity since the last
-  /// step. The damper is critical for spring and mass. K is positive semidefinite, so the matrix is
-  /// definite and the tool is stable against contacts of any stiffness. The angle of the spring is
-  /// 2 sin(angle / 2), which needs no arc functions and is 1 % low at half a radian.
+  /// Backward Euler, linearised once:
+  /// (M + T B + T^2 (K + Kc) + T d K) v1 = M v0 + T (w + wc + B vh), where d is the contact
+  /// damping, wc is the spring at the handle's present pose and vh the handle's velocity since the
+  /// last step. The damper is critical for spring and mass. K is positive semidefinite, so the
+  /// matrix is definite and the tool is stable against contacts of any stiffness. The angle of the
+  /// spring is that of displacement().
   /// @param handle     unit quaternion
   /// @param contact    wrench of the contacts at pose()
   /// @param stiffness  of the same: how it falls as the tool moves

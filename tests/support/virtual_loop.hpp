@@ -68,8 +68,9 @@ inline QueryOf::Function wall(double stiffness_N_per_m) {
 /// All that a loop needs, in virtual time.
 struct VirtualLoop {
   VirtualLoop(const hal::mock::HandParameters& hand, const LoopSettings& settings,
-              QueryOf::Function function, std::size_t ring_capacity = 1u << 14)
-      : device(hand, virtual_time()),
+              QueryOf::Function function, std::size_t ring_capacity = 1u << 14,
+              double readings_Hz = 2000)
+      : device(hand, virtual_time(readings_Hz)),
         clock(device),
         query(std::move(function)),
         ring(ring_capacity),
@@ -88,8 +89,9 @@ struct VirtualLoop {
     return out;
   }
 
-  static hal::mock::Options virtual_time() {
+  static hal::mock::Options virtual_time(double readings_Hz) {
     hal::mock::Options options;
+    options.rate_Hz = readings_Hz;
     options.time_base = hal::mock::TimeBase::virtual_;
     return options;
   }

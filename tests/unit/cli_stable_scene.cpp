@@ -19,7 +19,7 @@ TEST(StableScene, that_a_device_can_take_stays) {
   const StableScene s = stable_scene(scene_of(600, config::Coupling::direct), 1000, 5);
   EXPECT_EQ(s.note, "");
   EXPECT_EQ(s.scene.settings.stiffness_N_per_m, 600);
-  EXPECT_EQ(s.scene.settings.max_force_N, 3);
+  EXPECT_TRUE(std::isinf(s.scene.settings.max_force_N));  // the safety stage's business
 }
 
 TEST(StableScene, that_is_too_stiff_is_lowered_and_says_so) {
@@ -28,6 +28,13 @@ TEST(StableScene, that_is_too_stiff_is_lowered_and_says_so) {
   EXPECT_NE(s.note.find("stiffness_N_per_m lowered from 1e+05 to 1000"), std::string::npos)
       << s.note;
   EXPECT_NE(s.note.find("device_damping_N_s_per_m"), std::string::npos);
+}
+
+TEST(StableScene, that_damps_its_contacts_can_take_less) {
+  config::Scene scene = scene_of(1e5, config::Coupling::direct);
+  scene.contact_damping_N_s_per_m = 1;
+  const StableScene s = stable_scene(scene, 1000, 3);
+  EXPECT_NEAR(s.scene.settings.stiffness_N_per_m, 0.5 * (3 - 2) / 0.0015, 1e-9);
 }
 
 TEST(StableScene, of_unknown_damping_stays) {

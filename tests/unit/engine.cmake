@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 palpate_test(test_tree SOURCES unit/test_tree.cpp LIBS palpate_rt)
 palpate_test(force_penalty SOURCES unit/force_penalty.cpp LIBS palpate_rt)
+palpate_test(force_friction SOURCES unit/force_friction.cpp LIBS palpate_rt)
+palpate_test(force_linear_contact SOURCES unit/force_linear_contact.cpp LIBS palpate_rt)
 palpate_test(force_coupling SOURCES unit/force_coupling.cpp LIBS palpate_rt)
 
 # The page's loop, compiled as C.

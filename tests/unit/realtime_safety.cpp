@@ -27,14 +27,15 @@ struct Rig {
   hal::DeviceState reading;
   bool connected = true;
   double age_s = 0;
-  bool late = false;
+  std::uint64_t missed = 0;
   Status status = Status::ok;
   Wrench rendered{{0, 0, 2}, {0.05, 0, 0}};
+  hal::Twist twist;
 
   Wrench tick() {
     static_cast<void>(stage.accept(connected ? &reading : nullptr, age_s));
-    const Wrench sent = stage.command(status, rendered);
-    stage.tick_ended(late);
+    const Wrench sent = stage.command(status, rendered, twist);
+    stage.tick_ended(missed);
     return sent;
   }
   Wrench ticks(int count) {
@@ -96,6 +97,53 @@ TEST(SafetyStage, wrench_never_exceeds_the_limits) {
   EXPECT_NEAR(sent.force_N.y, -2.4, 1e-12);
 }
 
+/// A rig of other settings that has come to rendering in full.
+Rig rendering(void (*change)(SafetySettings&)) {
+  Rig rig;
+  change(rig.settings);
+  rig.stage = SafetyStage(rig.settings, kPeriod_s);
+  rig.ticks(300);
+  return rig;
+}
+
+TEST(SafetyStage, wrench_changes_no_faster_than_the_slew) {
+  Rig rig = rendering([](SafetySettings& s) {
+    s.max_force_slew_N_per_s = 500;
+    s.max_torque_slew_Nm_per_s = 20;
+  });
+  const Wrench before = rig.tick();
+  EXPECT_EQ(before.force_N.z, 2.0);
+  rig.rendered = {{0, 0, -2}, {-0.05, 0, 0}};
+  Wrench last = before;
+  for (int i = 1; i <= 8; ++i) {
+    const Wrench sent = rig.tick();
+    EXPECT_NEAR(sent.force_N.z, 2 - 0.5 * i, 1e-12);
+    EXPECT_LE(norm(sent.torque_Nm - last.torque_Nm), 0.02 + 1e-15);
+    last = sent;
+  }
+  EXPECT_EQ(rig.tick().force_N.z, -2.0);  // there, to the last bit
+}
+
+TEST(SafetyStage, slew_turns_a_force_round_within_its_length) {
+  Rig rig = rendering([](SafetySettings& s) { s.max_force_slew_N_per_s = 200; });
+  for (int i = 0; i < 400; ++i) {
+    rig.rendered.force_N = i / 100 % 2 == 0 ? Vec3d{-30, 40, 0} : Vec3d{40, 30, -20};
+    EXPECT_LE(norm(rig.tick().force_N), 3.0);
+  }
+}
+
+TEST(SafetyStage, hand_is_given_no_more_power_than_allowed) {
+  Rig rig = rendering([](SafetySettings& s) { s.max_power_W = 1; });
+  rig.twist.linear_m_per_s = {0, 0, 4};  // 8 W of 2 N, along the force
+  const Wrench given = rig.tick();
+  EXPECT_NEAR(given.force_N.z, 0.25, 1e-12);
+  EXPECT_NEAR(given.torque_Nm.x, 0.05 / 8, 1e-12);
+  rig.twist.angular_rad_per_s = {-140, 0, 0};  // takes back 7 W
+  EXPECT_NEAR(rig.tick().force_N.z, 2, 1e-12);
+  rig.twist = {{0, 0, -4}, {}};  // against the force the hand spends what it likes
+  EXPECT_EQ(rig.tick().force_N.z, 2.0);
+}
+
 TEST(SafetyStage, every_doubt_leads_to_its_named_fault_and_to_zero_within_two_ticks) {
   struct Doubt {
     Fault fault;
@@ -125,6 +173,17 @@ TEST(SafetyStage, every_doubt_leads_to_its_named_fault_and_to_zero_within_two_ti
   }
 }
 
+TEST(SafetyStage, fault_is_at_zero_with_the_second_command_at_any_rate) {
+  for (const double rate_Hz : {500.0, 1000.0, 4000.0, 10000.0}) {
+    Rig rig;
+    rig.stage = SafetyStage(rig.settings, 1 / rate_Hz);
+    ASSERT_EQ(rig.ticks(3000).force_N.z, 2.0);
+    rig.age_s = 1;
+    EXPECT_NEAR(rig.tick().force_N.z, 1.0, 1e-12) << rate_Hz;
+    EXPECT_EQ(rig.tick().force_N.z, 0.0) << rate_Hz;
+  }
+}
+
 TEST(SafetyStage, doubt_while_armed_is_a_fault_without_any_force) {
   Rig rig;
   rig.ticks(3);
@@ -136,16 +195,26 @@ TEST(SafetyStage, doubt_while_armed_is_a_fault_without_any_force) {
 TEST(SafetyStage, late_ticks_in_a_row_are_a_fault_and_scattered_ones_are_not) {
   Rig rig;
   for (int i = 0; i < 300; ++i) {
-    rig.late = i % 10 != 0;
+    rig.missed = i % 10 != 0 ? 1 : 0;
     rig.tick();
   }
   EXPECT_TRUE(rig.stage.faults().empty());
-  rig.late = true;
+  rig.missed = 1;
   rig.ticks(10);
   EXPECT_EQ(rig.stage.state(), LoopState::fault);
   EXPECT_TRUE(rig.stage.faults().has(Fault::missed_deadlines));
   EXPECT_LT(rig.tick().force_N.z, 2.0);
   EXPECT_EQ(rig.tick().force_N.z, 0.0);
+}
+
+TEST(SafetyStage, command_held_for_three_periods_is_followed_by_a_third_that_recovers) {
+  Rig rig = rendering([](SafetySettings& s) { s.hold_recovery_s = 0.01; });
+  rig.missed = 2;
+  rig.tick();
+  rig.missed = 0;
+  EXPECT_NEAR(rig.tick().force_N.z, 2.0 / 3, 1e-12);
+  EXPECT_NEAR(rig.tick().force_N.z, 2 * (1.0 / 3 + 0.1), 1e-12);
+  EXPECT_EQ(rig.ticks(8).force_N.z, 2.0);
 }
 
 TEST(SafetyStage, fault_stays_when_all_is_well_again) {

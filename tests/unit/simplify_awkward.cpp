@@ -3,6 +3,7 @@
 
 #include "simplify_judge.hpp"
 #include "simplify_random.hpp"
+#include "tests/support/effort.hpp"
 
 namespace palpate::bake {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 #ifdef PALPATE_LONG
 constexpr std::uint32_t kFirst = 100, kLast = 1000;
 #else
-constexpr std::uint32_t kFirst = 0, kLast = 100;
+constexpr std::uint32_t kFirst = 0, kLast = test::effort(100u, 10u);
 #endif
 
 TEST(Simplify_awkward_meshes, hold_all_invariants_to_the_end) {

@@ -10,6 +10,7 @@
 #include "decompose_shapes.hpp"
 #include "host_bake/models/models.hpp"
 #include "simplify_judge.hpp"
+#include "tests/support/effort.hpp"
 
 namespace palpate::bake {
 namespace {
@@ -17,10 +18,11 @@ namespace {
 using namespace test;
 
 constexpr SimplifyOptions kToTheEnd{0.0, 0};
+constexpr std::size_t kTriangles = palpate::test::effort<std::size_t>(3000, 1000);
 
 TEST(Simplify_models, hold_all_invariants_at_every_level) {
   for (const ModelInfo& model : models()) {
-    const std::size_t triangles = std::max<std::size_t>(model.least_triangles, 3000);
+    const std::size_t triangles = std::max(model.least_triangles, kTriangles);
     const Simplified result = simplified(make_model(model.name, triangles));
     EXPECT_EQ(judge_levels(result), "") << model.name;
     ASSERT_FALSE(result.levels.empty()) << model.name;
@@ -103,7 +105,7 @@ TEST(Simplify_crossing_faces, stay_as_they_are) {
 }
 
 TEST(Simplify, is_deterministic) {
-  const Mesh mesh = make_model("jaw_lower", 3000);
+  const Mesh mesh = make_model("jaw_lower", kTriangles);
   const Simplified a = simplified(mesh);
   const Simplified b = simplified(mesh);
   ASSERT_EQ(a.levels.size(), b.levels.size());

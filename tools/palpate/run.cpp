@@ -16,11 +16,10 @@
 #include "hal/mock/device.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/device_choice.hpp"
+#include "tools/palpate/query_stack.hpp"
 #include "tools/palpate/run_summary.hpp"
 #include "tools/palpate/scene_engine.hpp"
 #include "tools/palpate/stable_scene.hpp"
-#include "tools/realtime/coupled_query.hpp"
-#include "tools/realtime/engine_query.hpp"
 #include "tools/realtime/loop.hpp"
 #include "tools/realtime/realtime_thread.hpp"
 #include "tools/realtime/trace_writer.hpp"
@@ -118,6 +117,13 @@ realtime::LoopSettings loop_settings(const RunOptions& options, const config::Sc
   settings.safety.connect_within_s = std::max(settings.safety.connect_within_s, two_periods_s);
   settings.safety.max_force_N = std::min(scene.settings.max_force_N, device.max_force_N);
   settings.safety.max_torque_Nm = std::min(scene.settings.max_torque_Nm, device.max_torque_Nm);
+  settings.safety.max_force_slew_N_per_s = scene.max_force_slew_N_per_s;
+  settings.safety.max_torque_slew_Nm_per_s = scene.max_torque_slew_Nm_per_s;
+  settings.safety.max_power_W = scene.max_power_W;
+  constexpr std::uint8_t kPositionOnly = 3;
+  if (device.sensed_dof <= kPositionOnly) {
+    settings.fixed_orientation = scene.bodies[scene.tool].pose.orientation;
+  }
   return settings;
 }
 
@@ -129,10 +135,33 @@ std::optional<double> damping(const RunOptions& options, const config::Scene& sc
   return scene.hand.damping_N_s_per_m;
 }
 
-realtime::ContactQuery& query_of(const config::Scene& scene, realtime::ContactQuery& direct,
-                                 realtime::ContactQuery& coupled) {
-  return scene.coupling == config::Coupling::direct ? direct : coupled;
-}
+/// The contact queries on a thread of their own, where the scene asks for one; below the loop,
+/// which does not wait for it.
+class ServerThread {
+ public:
+  ServerThread(const RunOptions& options, const config::Scene& scene,
+               realtime::ContactServer* server, hal::Clock& clock) {
+    if (server == nullptr) return;
+    realtime::RealtimeOptions realtime = options.realtime;
+    realtime.fifo_priority = std::max(realtime.fifo_priority - 2, 0);
+    realtime.cpu = -1;
+    const realtime::ServerSettings settings{*scene.contact_rate_Hz, scene.budget_us};
+    thread_.emplace(realtime,
+                    [this, settings, server, &clock] { server->run(settings, clock, stop_); });
+  }
+  ~ServerThread() {
+    stop_ = true;
+    if (thread_) thread_->join();
+  }
+  ServerThread(const ServerThread&) = delete;
+  ServerThread& operator=(const ServerThread&) = delete;
+  ServerThread(ServerThread&&) = delete;
+  ServerThread& operator=(ServerThread&&) = delete;
+
+ private:
+  std::atomic<bool> stop_{false};
+  std::optional<realtime::RealtimeThread> thread_;
+};
 
 /// Runs the loop to its end, telling how far it has come.
 realtime::HostGrant drive(const RunOptions& options, const realtime::LoopSettings& settings,
@@ -183,9 +212,7 @@ void run(const RunOptions& options) {
   const StableScene stable = stable_scene(scene, rate_Hz, damping(options, scene));
   if (!stable.note.empty() && !options.quiet) std::cerr << stable.note << "\n";
   SceneEngine engine(stable.scene);
-  realtime::EngineQuery contacts(engine.engine(), engine.start_poses(), scene.tool);
-  realtime::CoupledQuery coupled(contacts, stable.scene.virtual_tool, 1 / rate_Hz);
-  realtime::ContactQuery& query = query_of(scene, contacts, coupled);
+  QueryStack queries(stable.scene, engine.engine(), engine.start_poses(), rate_Hz);
   if (const auto problem = device->open()) fail(options.device, *problem);
 
   const auto settings = loop_settings(options, scene, rate_Hz, device->capabilities());
@@ -196,14 +223,15 @@ void run(const RunOptions& options) {
       return std::make_unique<realtime::TraceWriter>(options.trace, scene.file, rate_Hz, ring);
     });
   }
-  const auto loop =
-      std::make_unique<realtime::Loop>(settings, *device, query, clock, trace ? &ring : nullptr);
+  const auto loop = std::make_unique<realtime::Loop>(settings, *device, queries.top(), clock,
+                                                     trace ? &ring : nullptr);
   if (parse_device(options.device).kind == "falcon" && !options.quiet) {
     std::cerr << "Pull the grip all the way out, then push it all the way in.\n";
   }
   if (const auto problem = device->start()) fail(options.device, *problem);
 
   RunOutcome outcome;
+  const ServerThread server(options, stable.scene, queries.server(), clock);
   outcome.grant = drive(options, settings, *loop);
   device->stop();
   outcome.scene = scene.file;

@@ -31,13 +31,12 @@ StableScene stable_scene(config::Scene scene, double rate_Hz,
   StableScene out{std::move(scene), {}};
   const bool direct = out.scene.coupling == config::Coupling::direct;
   Settings& settings = out.scene.settings;
-  if (!direct) {
-    settings.max_force_N = settings.max_torque_Nm = std::numeric_limits<double>::infinity();
-  }
+  settings.max_force_N = settings.max_torque_Nm = std::numeric_limits<double>::infinity();
   if (!damping_N_s_per_m) return out;
   const double period_s = 1 / rate_Hz;
+  const double rendered = direct ? kSidesOfAGap * out.scene.contact_damping_N_s_per_m : 0;
   const double most =
-      realtime::largest_passive_stiffness(*damping_N_s_per_m, 0, period_s, period_s);
+      realtime::largest_passive_stiffness(*damping_N_s_per_m, rendered, period_s, period_s);
   out.note = direct ? lowered("stiffness_N_per_m", settings.stiffness_N_per_m, most / kSidesOfAGap,
                               rate_Hz, *damping_N_s_per_m)
                     : lowered("spring_N_per_m", out.scene.virtual_tool.spring_N_per_m, most,

@@ -87,11 +87,11 @@ std::uint64_t Loop::run_tick(std::uint64_t due_ns) noexcept {
   query_contacts(tick);
   Wrench rendered = tick.result.wrench;
   if (settings_.passivity_control) rendered = passivity_.control(rendered, 1 / settings_.rate_Hz);
-  send(safety_.command(tick.status, rendered));
+  send(safety_.command(tick.status, rendered, passivity_.velocity()));
   tick.end_ns = clock_.now_ns();
 
   const std::uint64_t late = elapsed(due_ns, tick.end_ns) / period_ns_;
-  safety_.tick_ended(late > 0);
+  safety_.tick_ended(late);
   account(tick);
   if (telemetry_ != nullptr) record(tick);
   ++report_.ticks;
@@ -102,6 +102,7 @@ void Loop::read_device(Tick& tick) noexcept {
   const bool had_reading = reading_.sequence != 0;
   const std::uint64_t before_ns = reading_.time_ns;
   const bool fresh = device_.receive(reading_);
+  if (settings_.fixed_orientation) reading_.pose.orientation = *settings_.fixed_orientation;
   if (fresh && had_reading) observe_energy(elapsed(before_ns, reading_.time_ns));
   if (fresh) pose_before_ = reading_.pose;
   tick.state_age_ns = elapsed(reading_.time_ns, tick.begin_ns);

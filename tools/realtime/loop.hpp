@@ -38,6 +38,8 @@ struct LoopSettings {
   std::uint32_t warm_up_ticks = 100;
   /// A command's life: the device goes to zero force by itself this long after the last one.
   double command_life_s = 0.02;
+  /// Stands in for the orientation that a device of three axes does not sense; absent: it does.
+  std::optional<Quat> fixed_orientation;
   bool passivity_control = false;  ///< energy given out is taken back by a damper (passivity.hpp)
   SafetySettings safety;
 };

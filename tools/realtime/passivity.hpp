@@ -43,8 +43,9 @@ class PassivityController {
   /// energy is one sum over all six, so that friction in one direction may pay for another. O(1)
   [[nodiscard]] Wrench control(const Wrench& rendered, double period_s) const noexcept;
 
-  [[nodiscard]] double work() const noexcept { return energy_J_; }            ///< J
-  [[nodiscard]] double least_work() const noexcept { return energy_J_min_; }  ///< J; at most 0
+  [[nodiscard]] const hal::Twist& velocity() const noexcept { return velocity_; }  ///< observed
+  [[nodiscard]] double work() const noexcept { return energy_J_; }                 ///< J
+  [[nodiscard]] double least_work() const noexcept { return energy_J_min_; }       ///< J; at most 0
 
  private:
   Limits limits_;

@@ -27,6 +27,20 @@ Vec3d limited(const Vec3d& v, double max_length) {
   return length > max_length ? (kJustBelowOne * max_length / length) * v : v;
 }
 
+/// From one value towards another, no farther than a step.
+Vec3d stepped(const Vec3d& from, const Vec3d& to, double max_step) {
+  const Vec3d change = limited(to - from, max_step);
+  // Added up where it is cut only: a wrench within the rate is sent to its last bit.
+  return change == to - from ? to : from + change;
+}
+
+/// Scaled down until the hand is given no more than this.
+Wrench within_power(const Wrench& w, const hal::Twist& twist, double max_W) {
+  const double given_W =
+      dot(w.force_N, twist.linear_m_per_s) + dot(w.torque_Nm, twist.angular_rad_per_s);
+  return given_W > max_W ? scaled(max_W / given_W, w) : w;
+}
+
 /// How far a ramp has come after a time, in [0, 1]; a ramp of no length is over at once.
 double ramp(double elapsed_s, double length_s) {
   return elapsed_s >= length_s ? 1.0 : elapsed_s / length_s;
@@ -95,30 +109,44 @@ bool SafetyStage::accept(const hal::DeviceState* reading, double age_s) noexcept
   return accepted_;
 }
 
-Wrench SafetyStage::command(Status status, const Wrench& rendered) noexcept {
+Wrench SafetyStage::command(Status status, const Wrench& rendered,
+                            const hal::Twist& twist) noexcept {
   if (accepted_ && status != Status::ok) {
     raise(Fault::engine_error);
   } else if (accepted_ && !is_finite(rendered)) {
     raise(Fault::bad_wrench);
   }
-  sent_ = {};
-  if (state_ == LoopState::armed && ticks_in_state_ > settings_.arm_ticks) {
-    enter(LoopState::rendering);
-  } else if (state_ == LoopState::rendering) {
-    // Limits before the ramp: a deep start rises as gently as a shallow one, and a gain of at most
-    // 1 keeps the limits.
-    const Wrench within{limited(rendered.force_N, settings_.max_force_N),
-                        limited(rendered.torque_Nm, settings_.max_torque_Nm)};
-    sent_ = scaled(ramp(seconds(ticks_in_state_), settings_.start_ramp_s), within);
+  if (state_ == LoopState::rendering) {
+    sent_ = within_limits(rendered, twist);
   } else if (state_ == LoopState::fault) {
-    ++commands_in_fault_;
-    sent_ = scaled(1.0 - ramp(seconds(commands_in_fault_), settings_.fault_ramp_s), sent_at_fault_);
+    const double most = settings_.fault_ramp_ticks;
+    sent_ = scaled(1.0 - ramp(static_cast<double>(++commands_in_fault_), most), sent_at_fault_);
+  } else {
+    sent_ = {};
+    if (state_ == LoopState::armed && ticks_in_state_ > settings_.arm_ticks) {
+      enter(LoopState::rendering);
+    }
   }
   return sent_;
 }
 
-void SafetyStage::tick_ended(bool late) noexcept {
-  late_in_a_row_ = late ? late_in_a_row_ + 1 : 0;
+Wrench SafetyStage::within_limits(const Wrench& rendered, const hal::Twist& twist) const noexcept {
+  const Wrench within{limited(rendered.force_N, settings_.max_force_N),
+                      limited(rendered.torque_Nm, settings_.max_torque_Nm)};
+  // Limits before the ramp: a deep start rises as gently as a shallow one. What follows keeps them:
+  // a gain is at most 1, and a step leads from one vector within a length towards another.
+  const double gain = held_gain_ * ramp(seconds(ticks_in_state_), settings_.start_ramp_s);
+  const Wrench ramped = scaled(gain, within);
+  const Wrench stepped_to{
+      stepped(sent_.force_N, ramped.force_N, settings_.max_force_slew_N_per_s * period_s_),
+      stepped(sent_.torque_Nm, ramped.torque_Nm, settings_.max_torque_slew_Nm_per_s * period_s_)};
+  return within_power(stepped_to, twist, settings_.max_power_W);
+}
+
+void SafetyStage::tick_ended(std::uint64_t missed) noexcept {
+  held_gain_ = missed > 0 ? std::min(held_gain_, 1 / static_cast<double>(1 + missed))
+                          : std::min(1.0, held_gain_ + ramp(period_s_, settings_.hold_recovery_s));
+  late_in_a_row_ = missed > 0 ? late_in_a_row_ + 1 : 0;
   if (late_in_a_row_ >= settings_.late_ticks_to_fault) raise(Fault::missed_deadlines);
 }
 

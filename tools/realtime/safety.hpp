@@ -6,7 +6,8 @@
 //        any state --a doubt--> fault (left by a new run only)
 //
 // Force is zero in `disconnected` and `armed`, ramps up after entering `rendering`, and ramps down
-// to zero after entering `fault`.
+// to zero after entering `fault`. Homing is over before: Device::start() returns with the first
+// reading that can be relied on, and a device that homes later falls silent.
 #pragma once
 
 #include <cstdint>
@@ -56,8 +57,17 @@ struct SafetySettings {
       std::numeric_limits<double>::infinity();  ///< the force is scaled down to this length
   double max_torque_Nm =
       std::numeric_limits<double>::infinity();  ///< the torque is scaled down to this length
-  double start_ramp_s = 0.2;      ///< full force is reached this long after rendering begins
-  double fault_ramp_s = 0.002;    ///< zero is reached this long after a fault: two ticks at 1 kHz
+  /// The force, as a vector, changes no faster while rendering.
+  double max_force_slew_N_per_s = std::numeric_limits<double>::infinity();
+  double max_torque_slew_Nm_per_s = std::numeric_limits<double>::infinity();  ///< likewise
+  /// The hand is given no more than this; what it spends against the wrench is not limited. Goes
+  /// before slew: the wrench falls as fast as it must.
+  double max_power_W = std::numeric_limits<double>::infinity();
+  double start_ramp_s = 0.2;           ///< full force is reached this long after rendering begins
+  std::uint32_t fault_ramp_ticks = 2;  ///< zero is sent with this command after a fault; >= 1
+  /// A command that was held for n periods stands for a stiffness that only 1 / n of is stable
+  /// (passivity.hpp): what follows is scaled by that, and back to full after this time.
+  double hold_recovery_s = 0.05;
   double connect_within_s = 1.0;  ///< the first reading must come this soon
   /// A hand moves 15 mm in this time at 0.3 m/s; longer than the stalls of a host without a
   /// real-time kernel (10 ms seen), so that those are reported as missed deadlines and not as a
@@ -78,16 +88,20 @@ class SafetyStage {
   [[nodiscard]] bool accept(const hal::DeviceState* reading, double age_s) noexcept;
 
   /// The wrench for the device. @param status, rendered  of the contact query; ignored where
-  /// accept() was false
-  [[nodiscard]] Wrench command(Status status, const Wrench& rendered) noexcept;
+  /// accept() was false  @param twist  of the tool, as last observed
+  [[nodiscard]] Wrench command(Status status, const Wrench& rendered,
+                               const hal::Twist& twist) noexcept;
 
-  /// Told once the tick's command is out. @param late  whether that was after the tick's deadline
-  void tick_ended(bool late) noexcept;
+  /// Told once the tick's command is out. @param missed  periods that ended in the meantime,
+  /// without a command of their own; 0 where the tick met its deadline
+  void tick_ended(std::uint64_t missed) noexcept;
 
   [[nodiscard]] LoopState state() const noexcept { return state_; }
   [[nodiscard]] FaultSet faults() const noexcept { return faults_; }
 
  private:
+  [[nodiscard]] Wrench within_limits(const Wrench& rendered,
+                                     const hal::Twist& twist) const noexcept;
   void raise(Fault fault) noexcept;
   void enter(LoopState state) noexcept;
   [[nodiscard]] double seconds(std::uint64_t ticks) const noexcept;
@@ -100,7 +114,8 @@ class SafetyStage {
   std::uint64_t ticks_in_state_ = 0;
   std::uint64_t commands_in_fault_ = 0;
   std::uint32_t late_in_a_row_ = 0;
-  Wrench sent_;  ///< the last command; what a fault ramps down from
+  double held_gain_ = 1;  ///< 1 / n after a command was held for n periods, rising to 1
+  Wrench sent_;           ///< the last command; what a fault ramps down from
   Wrench sent_at_fault_;
 };
 

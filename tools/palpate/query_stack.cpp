@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/palpate/query_stack.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::cli {
+namespace {
+
+/// An answer serves for so many periods of the server; a host's stalls are shorter.
+constexpr double kMostServerPeriods = 50;
+
+bool has_friction(const config::Scene& scene) {
+  return std::any_of(scene.friction.begin(), scene.friction.end(), [](double f) { return f > 0; });
+}
+
+/// Damping over stiffness.
+double damping_s(const config::Scene& scene) {
+  const double stiffness = scene.settings.stiffness_N_per_m;
+  return stiffness > 0 ? scene.contact_damping_N_s_per_m / stiffness : 0;
+}
+
+}  // namespace
+
+QueryStack::QueryStack(const config::Scene& scene, Engine& engine, std::span<const Pose> poses,
+                       double rate_Hz)
+    : engine_(engine, poses, scene.tool) {
+  const double period_s = 1 / rate_Hz;
+  if (has_friction(scene)) {
+    top_ =
+        &friction_.emplace(*top_, scene.pairs, scene.tool, scene.settings, poses, scene.friction);
+  }
+  if (scene.contact_rate_Hz) {
+    const double most = std::ceil(kMostServerPeriods * rate_Hz / *scene.contact_rate_Hz);
+    server_.emplace(*top_);
+    top_ = &modelled_.emplace(*server_, static_cast<std::uint32_t>(most));
+  }
+  if (scene.coupling == config::Coupling::virtual_) {
+    force::CouplingSettings settings = scene.virtual_tool;
+    settings.contact_damping_s = damping_s(scene);
+    top_ = &coupled_.emplace(*top_, settings, period_s);
+  } else if (scene.contact_damping_N_s_per_m > 0) {
+    top_ = &damped_.emplace(*top_, damping_s(scene), period_s);
+  }
+}
+
+}  // namespace palpate::cli
