@@ -137,7 +137,12 @@ TEST_F(Sweep, Ticks_beyond_the_timed_ones_have_answers_without_times) {
 TEST_F(Sweep, Other_motion_in_the_same_folder_exits_2) {
   ASSERT_EQ(sweep({"--s0", "0.01", "--quiet"}).status, 0);
   write_poses(0.0001);
-  expect_refusal(sweep({"--s0", "0.01"}), 2, "another scene, motion or images");
+  expect_refusal(sweep({"--s0", "0.01"}), 2, "another scene, motion, images or clock");
+}
+
+TEST_F(Sweep, Processor_time_is_another_sweep) {
+  ASSERT_EQ(sweep({"--s0", "0.01", "--quiet", "--processor-time"}).status, 0);
+  expect_refusal(sweep({"--s0", "0.01"}), 2, "or clock");
 }
 
 TEST_F(Sweep, Advice_fits_the_budget_and_its_scene_replays) {

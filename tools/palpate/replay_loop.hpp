@@ -18,6 +18,9 @@ namespace palpate::cli {
 struct ReplayOptions {
   std::optional<std::uint64_t> budget_units;  ///< beside the scene's budget_us; absent: unlimited
   unsigned repeat = 1;                        ///< >= 1
+  /// Times and budgets in processor time of the thread, which does not count when others have the
+  /// processor; else in real time.
+  bool processor_time = false;
 };
 
 /// What a replay tells while it runs; each may be empty.

@@ -124,7 +124,8 @@ void sweep(const Arguments& a) {
   require_one_budget(a);
   const config::Scene scene = config::load_scene(a.scene);
   const PoseTrack track = read_poses(a.poses, scene);
-  const SweepFolder folder(a.folder, scene, a.poses, track.ticks.size(), a.observer);
+  const SweepFolder folder(a.folder, scene, a.poses, track.ticks.size(),
+                           {a.observer, a.runs.processor_time});
   const std::vector<SweepSetting> settings = with_earlier(expand(axes_of(a, scene)), folder);
   std::size_t differing = 0;
   {
@@ -200,6 +201,8 @@ void add_measures(CLI::App& command, Arguments& a) {
   command.add_option("--threads", a.runs.threads, "for what is not timed; 0: all cores")
       ->check(number_between(0, kMaxThreads))
       ->capture_default_str();
+  command.add_flag("--processor-time", a.runs.processor_time,
+                   "measure processor time, for machines that are not quiet; budgets too");
   command
       .add_option("--weber", a.observer.weber_fraction,
                   "smallest share of a force that a hand notices")

@@ -47,8 +47,11 @@ std::string hex(std::span<const std::uint8_t> bytes) {
 }
 
 /// Hash of everything that the ticks depend on but the settings; reads each image once.
-std::string key_of(const config::Scene& scene, const fs::path& poses, double& out_radius_m) {
+std::string key_of(const config::Scene& scene, const fs::path& poses, bool processor_time,
+                   double& out_radius_m) {
   Sha256 hash;
+  const std::string clock = processor_time ? "processor" : "real";
+  hash.update(std::as_bytes(std::span(clock)));
   for (const fs::path& file : {scene.file, poses}) {
     const std::string text = text_of(file);
     hash.update(std::as_bytes(std::span(text)));
@@ -66,15 +69,15 @@ std::string key_of(const config::Scene& scene, const fs::path& poses, double& ou
 }  // namespace
 
 SweepFolder::SweepFolder(fs::path folder, const config::Scene& scene, const fs::path& poses,
-                         std::size_t ticks, const Observer& observer)
+                         std::size_t ticks, const SweepMeasures& measures)
     : folder_(std::move(folder)), ticks_(ticks) {
-  const std::string key = key_of(scene, poses, radius_m_);
+  const std::string key = key_of(scene, poses, measures.processor_time, radius_m_);
   make_folder(folder_ / "ticks");
   const fs::path about = file("about.json");
   if (fs::exists(about)) {
     const auto made_for = nlohmann::json::parse(text_of(about), nullptr, false);
     if (made_for.is_object() && made_for.value("key", "") == key) return;
-    throw Failure(kUsage, "the folder holds the sweep of another scene, motion or images",
+    throw Failure(kUsage, "the folder holds a sweep of another scene, motion, images or clock",
                   folder_.string(), "give another folder, or remove this one");
   }
   const nlohmann::ordered_json json = {{"key", key},
@@ -82,8 +85,9 @@ SweepFolder::SweepFolder(fs::path folder, const config::Scene& scene, const fs::
                                        {"poses", fs::absolute(poses).string()},
                                        {"version", PALPATE_VERSION " " PALPATE_BUILD},
                                        {"ticks", ticks},
-                                       {"weber_fraction", observer.weber_fraction},
-                                       {"floor_N", observer.floor_N}};
+                                       {"processor_time", measures.processor_time},
+                                       {"weber_fraction", measures.observer.weber_fraction},
+                                       {"floor_N", measures.observer.floor_N}};
   write_file(about, json.dump(1) + "\n");
 }
 

@@ -14,13 +14,19 @@
 
 namespace palpate::cli {
 
+/// What a folder's figures are made with, beside settings.
+struct SweepMeasures {
+  Observer observer;
+  bool processor_time = false;  ///< see ReplayOptions
+};
+
 class SweepFolder {
  public:
   /// Makes the folder and its about.json, or goes on with one that was made for the same scene,
-  /// poses and images. Throws Failure: kUsage where it was made for others or is no such folder,
-  /// kRefused where an image is refused, kOther where it cannot be written.
+  /// poses, images and clock. Throws Failure: kUsage where it was made for others or is no such
+  /// folder, kRefused where an image is refused, kOther where it cannot be written.
   SweepFolder(std::filesystem::path folder, const config::Scene& scene,
-              const std::filesystem::path& poses, std::size_t ticks, const Observer& observer);
+              const std::filesystem::path& poses, std::size_t ticks, const SweepMeasures& measures);
 
   /// The setting's ticks, where they are there and as many as the track has.
   [[nodiscard]] std::optional<std::vector<TickRow>> load(const SweepSetting& setting) const;

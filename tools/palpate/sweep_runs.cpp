@@ -80,9 +80,11 @@ class Runs {
   [[nodiscard]] bool time(const SweepSetting& setting,
                           const std::optional<std::vector<TickRow>>& known) const {
     const bool whole = std::isfinite(setting.budget_us);
-    std::vector<TickRow> now = replay(with_setting(scene_, setting), whole ? track_ : first_,
-                                      {.budget_units = {}, .repeat = runs_.repeat}, {})
-                                   .ticks;
+    std::vector<TickRow> now =
+        replay(with_setting(scene_, setting), whole ? track_ : first_,
+               {.budget_units = {}, .repeat = runs_.repeat, .processor_time = runs_.processor_time},
+               {})
+            .ticks;
     bool same = true;
     if (known) {
       same = std::equal(now.begin(), now.end(), known->begin(), same_answer);

@@ -17,6 +17,7 @@ struct SweepRuns {
   std::size_t timed_ticks = 2000;  ///< >= 1
   unsigned repeat = 1;             ///< >= 1
   unsigned threads = 0;            ///< 0: all cores
+  bool processor_time = false;     ///< see ReplayOptions
 };
 
 /// Replays every setting that the folder does not have, and saves it as soon as it is done. Gives

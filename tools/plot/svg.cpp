@@ -134,9 +134,10 @@ void draw_series(const Series& series, const std::string& colour, const Scale& x
     if (!x.has(u) || !y.has(v)) continue;
     const std::string at_x = px(x.at(u)), at_y = px(y.at(v));
     if (series.mark == Mark::point) {
-      out += "<circle cx='" + at_x + "' cy='" + at_y + "' r='3.5' fill='" + colour + "'/>\n";
+      out.append("<circle cx='").append(at_x).append("' cy='").append(at_y);
+      out.append("' r='3.5' fill='").append(colour).append("'/>\n");
     } else {
-      path += (path.empty() ? "M" : "L") + at_x + " " + at_y;
+      path.append(path.empty() ? "M" : "L").append(at_x).append(" ").append(at_y);
     }
   }
   if (path.empty()) return;
