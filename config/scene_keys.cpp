@@ -39,6 +39,17 @@ constexpr Key<Scene> kEngineKeys[] = {
      "`regions`: refinement ends once the certified error of the force is no more"},
     {"interpolate", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.interpolate; }},
      "blend between levels of detail, so that the force has no steps"},
+    {"front_tracking", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.front_tracking; }},
+     "`levels`: a tick starts from the last tick's front; off: from the roots"},
+    {"motion_bounds", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.motion_bounds; }},
+     "`levels`: pairs of pieces are skipped while the motion since their last query cannot have "
+     "brought them within `delta_m`"},
+    {"root_short_cut", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.root_short_cut; }},
+     "`levels`: bodies whose hulls are `delta_m` or more apart cost one query"},
+    {"stop_on_surface", "",
+     Flag<Scene>{[](Scene& s) -> bool& { return s.settings.stop_on_surface; }},
+     "`levels`: one contact, and no further refinement, where the closest features of two pieces "
+     "lie on the original surfaces; nothing with `exact` or the paper's bounds"},
     {"bounds", "",
      Choice<Scene>{kBounds,
                    [](Scene& s, std::size_t i) { s.settings.bounds = static_cast<Bounds>(i); },

@@ -66,11 +66,12 @@ bool sound(const Scene& scene, const Limits& limits) noexcept {
 void lay_out_levels(Arena& arena, const Limits& limits, levels::QueryMemory& out) noexcept {
   const auto nodes = arena.array<levels::Node>(limits.nodes);
   const auto front = arena.array<std::uint32_t>(limits.nodes);
+  const auto blending = arena.array<std::uint32_t>(limits.nodes);
   const auto waiting = arena.array<levels::Waiting>(limits.nodes);
   const auto stopped = arena.array<std::uint32_t>(limits.nodes);
   const auto scratch = arena.array<convex::PenetrationScratch>(1);
   if (scratch.empty()) return;
-  out.tree = levels::TestTree(nodes, front);
+  out.tree = levels::TestTree(nodes, front, blending);
   out.waiting = waiting;
   out.stopped = stopped;
   out.scratch = &scratch[0];
@@ -177,8 +178,16 @@ bool all_fine_enough(const Engine& engine, const Settings& settings) noexcept {
 }
 
 levels::Rules rules_of(const Settings& settings) noexcept {
-  return {settings.exact, settings.interpolate, settings.bounds,
-          settings.order, settings.s0,          settings.kappa};
+  return {.exact = settings.exact,
+          .interpolate = settings.interpolate,
+          .front_tracking = settings.front_tracking,
+          .motion_bounds = settings.motion_bounds,
+          .root_short_cut = settings.root_short_cut,
+          .stop_on_surface = settings.stop_on_surface,
+          .bounds = settings.bounds,
+          .order = settings.order,
+          .s0 = settings.s0,
+          .kappa = settings.kappa};
 }
 
 double largest_unit_m(std::span<const levels::PairState> pairs) noexcept {

@@ -60,6 +60,10 @@ typedef struct palpate_settings {
   uint32_t interpolate;
   uint32_t bounds;
   uint32_t order;
+  uint32_t front_tracking; /* 0 or 1, and the next three */
+  uint32_t motion_bounds;
+  uint32_t root_short_cut;
+  uint32_t stop_on_surface;
   uint32_t reserved;
   double delta_m;
   double s0;

@@ -69,6 +69,19 @@ struct Settings {
   Bounds bounds = Bounds::tight;
   Order order = Order::deviation;  ///< exact queries always go nearest first
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
+
+  // Fewer pairs (levels engine). Each can be switched alone, so that its effect can be measured.
+  // The first three never change which pairs are near; the last one leaves contacts out.
+  bool front_tracking = true;  ///< start from the last tick's front; off: from the roots each tick
+  /// Skip a pair while its last proved distance, less the motion since, is delta or more; off:
+  /// every pair of the front is measured in every tick.
+  bool motion_bounds = true;
+  bool root_short_cut = true;  ///< where the root hulls are delta or more apart, measure no others
+  /// Stop at a pair whose closest features already lie on both original surfaces: one contact there
+  /// instead of all below it. The least distance stays as certified; no effect where `exact` is set
+  /// or bounds are the paper's.
+  bool stop_on_surface = false;
+
   /// Regions engine: refinement may end once the certified error of the force is no more; 0: exact.
   double force_tolerance_N = 0;
   double stiffness_N_per_m = 600.0;  ///< of the penalty force in any one direction; >= 0

@@ -3,29 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
-#include "rt_core/base/meter.hpp"
-#include "rt_core/convex/penetration.hpp"
-#include "rt_core/levels/probe.hpp"
-#include "rt_core/levels/report.hpp"
-#include "rt_core/levels/stopped.hpp"
-#include "rt_core/levels/test_tree.hpp"
+#include "rt_core/levels/work.hpp"
 
 namespace palpate::levels {
-
-/// What interpolation works on, all borrowed from the query.
-struct Interpolation {
-  std::span<PairState> pairs;
-  TestTree& tree;
-  const Rules& rules;
-  Probe& probe;
-  Report& report;
-  Stopped& stopped;
-  convex::PenetrationScratch& scratch;
-  Meter& meter;
-  std::uint32_t tick = 0;  ///< marks inner nodes that have been measured
-};
 
 /// From this excess of a parent on, its children have all of the contact.
 inline constexpr double kOwnContactFrom = 2;
@@ -41,7 +22,11 @@ inline constexpr double kOwnContactFrom = 2;
 /// child comes within delta or leaves it. The parents are what the query has passed through, so the
 /// paper's conservative refinement below a stop is not needed. A parent with e_p <= 1 takes its
 /// children's place: so the front does not depend on how it came about. One query for each near
-/// parent of stopped nodes, or with e_p < kOwnContactFrom, while the budget lasts.
-void interpolate(const Interpolation& on) noexcept;
+/// parent of settled children that has a stopped one, or e_p < kOwnContactFrom, while the budget
+/// lasts; nothing else of the front is looked at.
+void interpolate(Work& work) noexcept;
+
+/// Keeps a node inside the tree at hand for later ticks where its e_p < kOwnContactFrom.
+void note_blending(Work& work, std::uint32_t index) noexcept;
 
 }  // namespace palpate::levels

@@ -12,17 +12,10 @@
 #include "rt_core/levels/body_pair.hpp"
 #include "rt_core/levels/rules.hpp"
 #include "rt_core/levels/test_tree.hpp"
+#include "rt_core/levels/waiting.hpp"
 #include "rt_core/palpate_rt.hpp"
 
 namespace palpate::levels {
-
-/// A node waiting for its query or, once measured, for its split.
-struct Waiting {
-  double rank = 0;     ///< less comes first
-  double lower_m = 0;  ///< the proved lower bound of its distance in metres
-  std::uint32_t node = 0;
-  bool later = false;  ///< adds detail: after all that only renews contacts
-};
 
 /// Memory of the query, borrowed from the engine.
 struct QueryMemory {
@@ -55,19 +48,14 @@ struct QueryResult {
 
 /// Q(A, B, delta) for all pairs, whose poses and deltas are set.
 ///
-/// Starts from last tick's front (generalised front tracking), or higher where the budget would not
-/// do for measuring it again. Front nodes whose lower bound, less the motion since it was proved,
-/// is still delta or more are skipped. The others are measured, nearest first: at delta or more
-/// they rest; where missing detail could be felt (rules.hpp) they wait to be split, in the order of
-/// Rules::order over all pairs, free levels first; else they stop and give a contact. A split
-/// replaces a node by all pairs of one piece's children, which are measured before the next split.
-/// What still waits when the budget ends keeps its lower bound, and the last contact that it or an
-/// ancestor gave, re-measured at its material points: the cut is complete at every moment, and a
-/// truncated answer loses detail only. With time left, contacts are interpolated between levels
-/// (interpolate.hpp), the front is raised where children rest or their parent would stop, and lower
-/// bounds of the nearest stops are tightened for the certificate. Departure: nearest first within
-/// what has to be measured anyway, so that forces are renewed before detail is added. Cost: the
-/// budget, plus one leaf contact, plus O(front).
+/// Stage by stage: start (start.hpp) from last tick's front, the near nodes of it on a queue;
+/// refine (refine.hpp), while the budget lasts; with time left, interpolate contacts between levels
+/// (interpolate.hpp) and keep up the tree and the certificate (upkeep.hpp). What still waits when
+/// the budget ends keeps its lower bound, and the last contact that it or an ancestor gave,
+/// re-measured at its material points: the cut is complete at every moment, and a truncated answer
+/// loses detail only. Departure: nearest first within what has to be measured anyway, so that
+/// forces are renewed before detail is added. Cost: the budget, plus one leaf contact, plus
+/// O(front).
 QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter) noexcept;
 
 }  // namespace palpate::levels

@@ -29,10 +29,6 @@ void renew(const PairState& pair, Node& node) noexcept {
   node.turn_at = pair.turn;
 }
 
-double rest_margin(const PairState& pair, const Node& node) noexcept {
-  return kRestTicks * (pair.last_travel + pair.last_turn * static_cast<double>(node.reach));
-}
-
 /// Of the distance of what is below two overlapping hulls.
 double overlap_bound(const PairState& pair, const Node& node) noexcept {
   const double spheres = sphere_distance(pair, piece_a(pair, node), piece_b(pair, node));
@@ -92,11 +88,13 @@ void Probe::seed(const PairState& pair, Node& node, Vec3d towards_a) noexcept {
                node.culling);
 }
 
-double Probe::bound(const PairState& pair, Node& node) noexcept {
-  if (rules_.bounds == Bounds::paper) {
-    own(pair, node);
-    return certain_now(pair, node);
-  }
+double Probe::rest_margin(const PairState& pair, const Node& node) const noexcept {
+  if (!rules_.motion_bounds) return 0;
+  return kRestTicks * (pair.last_travel + pair.last_turn * static_cast<double>(node.reach));
+}
+
+convex::Distance Probe::cull(const PairState& pair, Node& node) noexcept {
+  if (rules_.bounds == Bounds::paper) return own(pair, node);
   charge(1);
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
@@ -109,7 +107,7 @@ double Probe::bound(const PairState& pair, Node& node) noexcept {
   if (d.state == convex::State::gave_up) capped_ = true;
   if (node.contact == 0 && !overlaps(d)) node.witness_a = vec_cast<float>(d.normal);
   prove(pair, node, overlaps(d) ? overlap_bound(pair, node) : d.lower_bound - residual);
-  return certain_now(pair, node);
+  return d;
 }
 
 convex::Distance Probe::own(const PairState& pair, Node& node) noexcept {

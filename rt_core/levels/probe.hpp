@@ -41,9 +41,10 @@ class Probe {
  public:
   Probe(const Rules& rules, Meter& meter) noexcept : rules_(rules), meter_(meter) {}
 
-  /// Of the culling hulls: what is certain then, exact up to delta and a little more, so that a
-  /// node rests for some ticks. With Bounds::paper of the hulls themselves, widened by h (eq. 5).
-  double bound(const PairState& pair, Node& node) noexcept;
+  /// Of the culling hulls, exact up to delta and a little more, so that a node rests for some
+  /// ticks. With Bounds::paper of the hulls themselves, widened by h (eq. 5). certain_now() then
+  /// has what follows for the original surfaces.
+  convex::Distance cull(const PairState& pair, Node& node) noexcept;
 
   /// Of the pieces' own hulls, exact up to delta + h + h.
   convex::Distance own(const PairState& pair, Node& node) noexcept;
@@ -51,7 +52,7 @@ class Probe {
   /// Starts both kinds of query from a guess of the direction from b to a.
   static void seed(const PairState& pair, Node& node, Vec3d towards_a) noexcept;
 
-  /// Would bound() tell more than own() has?
+  /// Would cull() tell more than own() has?
   [[nodiscard]] bool has_tighter(const PairState& pair, const Node& node) const noexcept {
     return rules_.bounds == Bounds::tight &&
            (piece_a(pair, node).culling_vertices != 0 || piece_b(pair, node).culling_vertices != 0);
@@ -65,6 +66,8 @@ class Probe {
   [[nodiscard]] bool iteration_cap_met() const noexcept { return capped_; }
 
  private:
+  [[nodiscard]] double rest_margin(const PairState& pair, const Node& node) const noexcept;
+
   const Rules& rules_;
   Meter& meter_;
   std::uint64_t queries_ = 0;

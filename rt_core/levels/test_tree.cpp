@@ -5,9 +5,10 @@
 
 namespace palpate::levels {
 
-TestTree::TestTree(std::span<Node> nodes, std::span<std::uint32_t> front) noexcept
-    : nodes_(nodes), front_(front) {
-  PALPATE_ASSERT(nodes.size() == front.size());
+TestTree::TestTree(std::span<Node> nodes, std::span<std::uint32_t> front,
+                   std::span<std::uint32_t> blending) noexcept
+    : nodes_(nodes), front_(front), blending_(blending) {
+  PALPATE_ASSERT(nodes.size() == front.size() && nodes.size() == blending.size());
   // Lowest index first, so that the order of nodes is the same on every run.
   for (std::size_t i = nodes.size(); i > 0; --i) give_back(static_cast<std::uint32_t>(i - 1));
 }
@@ -22,6 +23,7 @@ std::uint32_t TestTree::take() noexcept {
 }
 
 void TestTree::give_back(std::uint32_t node) noexcept {
+  set_blending(node, false);
   nodes_[node].next_sibling = free_head_;
   free_head_ = node;
   ++free_count_;
@@ -39,6 +41,21 @@ void TestTree::leave_front(std::uint32_t node) noexcept {
   front_[slot] = last;
   nodes_[last].front_slot = slot;
   nodes_[node].front_slot = kNone;
+}
+
+void TestTree::set_blending(std::uint32_t node, bool on) noexcept {
+  const std::uint32_t slot = nodes_[node].blending_slot;
+  if (on == (slot != kNone)) return;
+  if (on) {
+    PALPATE_ASSERT(!in_front(node));
+    nodes_[node].blending_slot = blending_size_;
+    blending_[blending_size_++] = node;
+    return;
+  }
+  const std::uint32_t last = blending_[--blending_size_];
+  blending_[slot] = last;
+  nodes_[last].blending_slot = slot;
+  nodes_[node].blending_slot = kNone;
 }
 
 std::uint32_t TestTree::add_root(std::uint16_t pair, std::uint32_t piece_a,
@@ -93,6 +110,7 @@ void TestTree::collapse(std::uint32_t top) noexcept {
     nodes_[parent].first_child = sibling;
     node = sibling != kNone ? sibling : parent;
   }
+  set_blending(top, false);
   enter_front(top);
 }
 

@@ -38,8 +38,9 @@ struct alignas(64) Node {
   // Links.
   std::uint32_t parent = kNone;
   std::uint32_t first_child = kNone;
-  std::uint32_t next_sibling = kNone;  ///< also links the free list
-  std::uint32_t front_slot = kNone;    ///< place in the front; kNone inside the tree
+  std::uint32_t next_sibling = kNone;   ///< also links the free list
+  std::uint32_t front_slot = kNone;     ///< place in the front; kNone inside the tree
+  std::uint32_t blending_slot = kNone;  ///< place among the blending nodes; kNone for others
   // Of the last query.
   Vec3f witness_a{};  ///< in the coordinates of a and of b; without a contact witness_a is the
                       ///< separating direction instead
@@ -64,12 +65,14 @@ inline void clear(Node& node, std::uint8_t flags) noexcept {
 
 /// A fixed pool of nodes, one tree for every body pair, all fronts in one array. A node is replaced
 /// by *all* its children or all children by their parent, so that the front covers every pair of
-/// surface regions at every moment.
+/// surface regions at every moment. Nodes inside the tree may be marked as blending: found again
+/// without a walk over the front.
 class TestTree {
  public:
   TestTree() = default;
-  /// @param nodes, front  of equal length: the capacity
-  TestTree(std::span<Node> nodes, std::span<std::uint32_t> front) noexcept;
+  /// @param nodes, front, blending  of equal length: the capacity
+  TestTree(std::span<Node> nodes, std::span<std::uint32_t> front,
+           std::span<std::uint32_t> blending) noexcept;
 
   /// A new tree of one node. Returns its index, or kNone where the pool is empty.
   std::uint32_t add_root(std::uint16_t pair, std::uint32_t piece_a, std::uint32_t piece_b) noexcept;
@@ -82,6 +85,12 @@ class TestTree {
 
   /// Replaces everything below a node by the node itself. O(nodes below).
   void collapse(std::uint32_t node) noexcept;
+
+  /// Marks a node inside the tree, until it is back in the front or gone.
+  void set_blending(std::uint32_t node, bool on) noexcept;
+  [[nodiscard]] std::span<const std::uint32_t> blending() const noexcept {
+    return blending_.first(blending_size_);
+  }
 
   [[nodiscard]] bool in_front(std::uint32_t node) const noexcept {
     return nodes_[node].front_slot != kNone;
@@ -101,7 +110,9 @@ class TestTree {
 
   std::span<Node> nodes_;
   std::span<std::uint32_t> front_;
+  std::span<std::uint32_t> blending_;
   std::uint32_t front_size_ = 0;
+  std::uint32_t blending_size_ = 0;
   std::uint32_t free_head_ = kNone;
   std::uint32_t free_count_ = 0;
 };

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <tuple>
 
+#include "tests/support/answers.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -51,16 +51,6 @@ Settings with_s0(double s0, bool interpolate = true) {
   return {.delta_m = kDelta, .s0 = s0, .interpolate = interpolate, .cluster_radius_m = 0.1};
 }
 
-void expect_certified(const TickResult& r, double truth) {
-  const double bound = r.certificate.error_bound_m;
-  ASSERT_TRUE(std::isfinite(bound));
-  if (r.contacts.empty()) {
-    EXPECT_GE(truth + bound, 0.9999 * kDelta) << "a contact was lost";
-  } else if (truth > 0) {
-    EXPECT_LE(std::abs(r.min_distance_m - truth), bound + 2e-6);
-  }
-}
-
 TEST(EngineLevels, bodies_have_several_simplified_levels) {
   for (const ImageView* image : {&bodies().a.view, &bodies().b.view})
     EXPECT_GE(image->levels.size() - image->header->free_levels, 4u);
@@ -76,19 +66,11 @@ TEST(EngineLevels, certificate_holds_whatever_is_left_out) {
           const Pose poses[2] = {slide(i), {}};
           const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
           EXPECT_LE(r.queries, units);
-          expect_certified(r, truth[static_cast<std::size_t>(i)]);
+          expect_certified(r, truth[static_cast<std::size_t>(i)], kDelta);
         }
       }
     }
   }
-}
-
-using PieceNumbers = std::set<std::pair<std::uint32_t, std::uint32_t>>;
-
-PieceNumbers pairs_of(const TickResult& r) {
-  PieceNumbers pairs;
-  for (const Contact& c : r.contacts) pairs.emplace(c.piece_a, c.piece_b);
-  return pairs;
 }
 
 TEST(EngineLevels, threshold_of_zero_is_exact) {

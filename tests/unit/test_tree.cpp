@@ -11,9 +11,10 @@ namespace palpate::levels {
 namespace {
 
 struct Pool {
-  explicit Pool(std::size_t n) : nodes(n), slots(n), tree(nodes, slots) {}
+  explicit Pool(std::size_t n) : nodes(n), slots(n), blending(n), tree(nodes, slots, blending) {}
   std::vector<Node> nodes;
   std::vector<std::uint32_t> slots;
+  std::vector<std::uint32_t> blending;
   TestTree tree;
 };
 

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/levels/refine.hpp"
+
+#include "rt_core/levels/interpolate.hpp"
+#include "rt_core/levels/leaf_contact.hpp"
+#include "rt_core/levels/start.hpp"
+#include "rt_core/levels/surface_stop.hpp"
+
+namespace palpate::levels {
+namespace {
+
+using image::Piece;
+
+bool budget_left(Work& work) noexcept {
+  if (work.meter.out_of_units()) {
+    work.result.truncated_by_units = true;
+  } else if (work.meter.out_of_time()) {
+    work.result.truncated_by_time = true;
+  } else {
+    return true;
+  }
+  return false;
+}
+
+void allow(Node& node, bool a, bool b) noexcept {
+  if (a) set(node, kRefineA);
+  if (b) set(node, kRefineB);
+}
+
+void wait_for_split(Work& work, std::uint32_t index) noexcept {
+  const Node& node = work.tree[index];
+  const PairState& pair = work.pair_of(node);
+  const double certain = certain_now(pair, node);
+  work.waiting.push({rank(work, node, certain), certain * pair.unit_m, index, true});
+}
+
+/// Until it is measured, a child stands where its parent did.
+void inherit(const Node& parent, Node& child) noexcept {
+  child.contact = parent.contact;
+  child.witness_a = parent.witness_a;
+  child.witness_b = parent.witness_b;
+  child.slack = parent.slack;
+  child.s_star = parent.s_star;
+}
+
+/// From b to a at the last query; any where none is known.
+Vec3d direction(const PairState& pair, const Node& node) noexcept {
+  if (node.contact == 0) return vec_cast<double>(node.witness_a);
+  const Vec3d on_b =
+      pair.b_in_a.rotation * vec_cast<double>(node.witness_b) + pair.b_in_a.translation;
+  return static_cast<double>(node.contact) * (vec_cast<double>(node.witness_a) - on_b);
+}
+
+void split(Work& work, std::uint32_t index) noexcept {
+  Node& parent = work.tree[index];
+  const PairState& pair = work.pair_of(parent);
+  const Piece& a = piece_a(pair, parent);
+  const Piece& b = piece_b(pair, parent);
+  const bool split_a =
+      splits_a(pair, a, b, (parent.flags & kRefineA) != 0, (parent.flags & kRefineB) != 0);
+  const Piece& piece = split_a ? a : b;
+  if (!work.tree.split(index, split_a, piece.first_child, piece.children)) {
+    work.result.truncated_by_memory = true;
+    work.leave(index, work.certain_m(parent));
+    return;
+  }
+  note_blending(work, index);
+  const Vec3d towards_a = direction(pair, parent);
+  for (std::uint32_t c = parent.first_child; c != kNone; c = work.tree[c].next_sibling) {
+    Node& child = work.tree[c];
+    begin(pair, child, certain_now(pair, parent));
+    inherit(parent, child);
+    if (squared_norm(towards_a) > 0) Probe::seed(pair, child, towards_a);
+    wait_if_near(work, c);
+  }
+}
+
+void stop(Work& work, std::uint32_t index) noexcept { work.stopped.add(work.tree[index], index); }
+
+void stop_on_surface(Work& work, std::uint32_t index, const LeafContact& contact) noexcept {
+  Node& node = work.tree[index];
+  keep_on_surface(work.pair_of(node), node, contact);
+  work.add_contact(node, contact);
+  stop(work, index);
+}
+
+/// Keeps the contact of two pieces in the node, and reports it where refinement stops here.
+void touch(Work& work, Node& node, const convex::Distance& d, bool stops) noexcept {
+  const PairState& pair = work.pair_of(node);
+  const Piece& a = piece_a(pair, node);
+  const Piece& b = piece_b(pair, node);
+  const LeafContact contact = leaf_contact(pair, a, b, d, node.own, pair.delta,
+                                           work.meter.queries_left(), *work.memory.scratch);
+  work.probe.charge(contact.queries);
+  node.contact = 0;
+  if (contact.interrupted) {
+    work.result.truncated_by_units = true;
+    work.leave_unresolved(work.certain_m(node), node);
+  }
+  if (!contact.found) return;
+  const bool original = !is_simplified(a) && !is_simplified(b);
+  if (original && !contact.interrupted) prove(pair, node, contact.lower_bound);
+  if (contact.capped) {
+    work.result.iteration_cap_met = true;
+    const double gap = (contact.distance - contact.lower_bound) * pair.unit_m;
+    if (gap > work.result.capped_gap_m) work.result.capped_gap_m = gap;
+  }
+  if (contact.distance >= pair.delta) return;
+  keep(pair, a, b, contact, node);
+  if (stops) work.add_contact(node, contact);
+}
+
+/// A node that gives no contact itself.
+void measure_bound(Work& work, std::uint32_t index) noexcept {
+  Node& node = work.tree[index];
+  const PairState& pair = work.pair_of(node);
+  const Piece& a = piece_a(pair, node);
+  const Piece& b = piece_b(pair, node);
+  const SurfaceStop surface = probe_surface(work, node);
+  set_rest(pair, node, certain_now(pair, node));
+  if (!work.is_near(node)) {
+    node.contact = 0;
+  } else if (surface.stops) {
+    stop_on_surface(work, index, surface.contact);
+  } else {
+    const bool all = work.rules.exact;
+    allow(node, a.children != 0 && (all || is_free(a)), b.children != 0 && (all || is_free(b)));
+    split(work, index);
+  }
+}
+
+void measure_metric(Work& work, std::uint32_t index) noexcept {
+  Node& node = work.tree[index];
+  const PairState& pair = work.pair_of(node);
+  const convex::Distance d = work.probe.own(pair, node);
+  const Detail missing = detail(pair, piece_a(pair, node), piece_b(pair, node), d, work.rules);
+  node.s_star = static_cast<float>(missing.s_star);
+  node.excess = static_cast<float>(missing.excess);
+  if (work.rests_apart(node, d)) {
+    node.contact = 0;
+    return;
+  }
+  const bool refines = missing.refine_a || missing.refine_b;
+  if (refines && may_stop_on_surface(work, node) && !work.out_of_budget()) {
+    const SurfaceStop surface = probe_surface(work, node);
+    if (surface.stops) {
+      stop_on_surface(work, index, surface.contact);
+      return;
+    }
+  }
+  if (d.lower_bound < pair.delta) {
+    // Overlap of simplified hulls is no contact: the last one, of an ancestor apart, stands.
+    if (!refines || !convex::overlaps(d)) touch(work, node, d, !refines);
+  } else {
+    node.contact = 0;
+  }
+  if (refines) {
+    allow(node, missing.refine_a, missing.refine_b);
+    wait_for_split(work, index);
+  } else {
+    stop(work, index);
+  }
+}
+
+void measure(Work& work, std::uint32_t index) noexcept {
+  Node& node = work.tree[index];
+  const PairState& pair = work.pair_of(node);
+  set(node, kMeasured);
+  const bool leaves = piece_a(pair, node).children == 0 && piece_b(pair, node).children == 0;
+  if (!leaves && work.only_culls(node)) {
+    measure_bound(work, index);
+  } else {
+    measure_metric(work, index);
+  }
+}
+
+}  // namespace
+
+void refine(Work& work) noexcept {
+  while (!work.waiting.empty() && budget_left(work)) {
+    const std::uint32_t index = work.waiting.top().node;
+    work.waiting.pop();
+    if ((work.tree[index].flags & kMeasured) != 0) {
+      split(work, index);
+    } else {
+      measure(work, index);
+    }
+  }
+}
+
+}  // namespace palpate::levels

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sensation preserving refinement: from the front of the last tick to that of this one.
+#pragma once
+
+#include "rt_core/levels/work.hpp"
+
+namespace palpate::levels {
+
+/// Works the queue off while the budget lasts.
+///
+/// Near front nodes are measured first, nearest first: at delta or more they rest; where missing
+/// detail could be felt (rules.hpp) they wait to be split, in the order of Rules::order over all
+/// pairs of bodies, free levels first; else they stop and give a contact, as they do with
+/// Rules::stop_on_surface where that is already one of the original surfaces (surface_stop.hpp). A
+/// split replaces a node by all pairs of one piece's children, which are measured before the next
+/// split. What is still on the queue afterwards is not resolved.
+void refine(Work& work) noexcept;
+
+}  // namespace palpate::levels

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/levels/start.hpp"
+
+namespace palpate::levels {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// A move by more than this share of the radius (or of delta, where that is more) starts from the
+/// roots: an old front says nothing about a far pose.
+constexpr double kJumpRadius = 0.05;
+constexpr double kJumpDelta = 2;
+/// The front may be this much larger than what the budget is expected to measure: the estimate
+/// wavers, and a front that is cut back every other tick would be felt.
+constexpr double kFrontOverBudget = 1.25;
+
+bool jumped(const PairState& pair) noexcept {
+  const double moved = pair.last_travel + pair.last_turn;
+  const double far = kJumpDelta * pair.delta > kJumpRadius ? kJumpDelta * pair.delta : kJumpRadius;
+  return moved > far;
+}
+
+void restart(Work& work, PairState& pair) noexcept {
+  Node& root = work.tree[pair.root];
+  work.tree.collapse(pair.root);
+  root.contact = 0;
+  root.s_star = root.excess = std::numeric_limits<float>::infinity();
+  begin(pair, root, -kInfinity);
+  pair.fresh = false;
+}
+
+/// The root short cut. A root in the front is measured anyway.
+void rise_if_apart(Work& work, PairState& pair) noexcept {
+  Node& root = work.tree[pair.root];
+  if (work.tree.in_front(pair.root) || work.out_of_budget()) return;
+  if (!work.rules.motion_bounds) begin(pair, root, -kInfinity);
+  if (work.is_near(root) && !work.rests(root)) return;
+  work.tree.collapse(pair.root);
+  root.contact = 0;
+}
+
+void place(Work& work, PairState& pair) noexcept {
+  const Node& root = work.tree[pair.root];
+  const bool apart = sphere_distance(pair, piece_a(pair, root), piece_b(pair, root)) >= pair.delta;
+  if (pair.fresh || apart || !work.rules.front_tracking || jumped(pair)) {
+    restart(work, pair);
+  } else if (work.rules.root_short_cut) {
+    rise_if_apart(work, pair);
+  }
+}
+
+double count_near(const Work& work) noexcept {
+  double near = 0;
+  for (const std::uint32_t index : work.tree.front())
+    near += work.is_near(work.tree[index]) ? 1 : 0;
+  return near;
+}
+
+/// Every near front node gives way to its parent. False where all are roots.
+bool raise_near(Work& work) noexcept {
+  bool raised = false;
+  for (std::size_t i = 0; i < work.tree.front().size(); ++i) {
+    const std::uint32_t index = work.tree.front()[i];
+    const std::uint32_t parent = work.tree[index].parent;
+    if (parent == kNone || !work.is_near(work.tree[index])) continue;
+    work.tree.collapse(parent);  // puts other nodes into this place
+    raised = true;
+  }
+  return raised;
+}
+
+void cut_back(Work& work) noexcept {
+  const double most = kFrontOverBudget * work.meter.queries_affordable(work.memory.query_ns);
+  for (std::uint32_t round = 0; round < 2 * image::kMaxLevels; ++round) {
+    if (static_cast<double>(work.tree.front().size()) <= most || count_near(work) <= most) return;
+    if (!raise_near(work)) return;
+  }
+}
+
+}  // namespace
+
+void start(Work& work) noexcept {
+  for (PairState& pair : work.memory.pairs) place(work, pair);
+  cut_back(work);
+  for (const std::uint32_t index : work.tree.front()) {
+    Node& node = work.tree[index];
+    clear(node, kOfThisTick);
+    node.report = kNone;
+    if (!work.rules.motion_bounds) begin(work.pair_of(node), node, -kInfinity);
+    wait_if_near(work, index);
+  }
+}
+
+void wait_if_near(Work& work, std::uint32_t index) noexcept {
+  const Node& node = work.tree[index];
+  if (!work.is_near(node)) return;
+  const PairState& pair = work.pair_of(node);
+  const bool later = work.only_culls(node);
+  const double certain = certain_now(pair, node);
+  work.waiting.push(
+      {later ? rank(work, node, certain) : certain, certain * pair.unit_m, index, later});
+}
+
+double rank(const Work& work, const Node& node, double lower) noexcept {
+  if (work.rules.exact || work.rules.order == Order::nearest) return lower;
+  // What is missing counts for no more than what the parent missed: refinement has an order.
+  const float of_parent = node.parent == kNone ? node.s_star : work.tree[node.parent].s_star;
+  const double s = static_cast<double>(node.s_star < of_parent ? node.s_star : of_parent);
+  if (work.rules.order == Order::deviation) return -s;
+  constexpr double kLeastDistance = 1e-9;
+  return -s / (lower > kLeastDistance ? lower : kLeastDistance);
+}
+
+}  // namespace palpate::levels

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/levels/upkeep.hpp"
+
+#include "rt_core/levels/interpolate.hpp"
+#include "rt_core/levels/surface_stop.hpp"
+
+namespace palpate::levels {
+namespace {
+
+/// Raising looks at this many front nodes a tick, plus this share of them, and spends at most so
+/// many queries; tightening likewise.
+constexpr std::uint32_t kRaiseScan = 64;
+constexpr std::uint32_t kRaiseScanShare = 32;
+constexpr std::uint64_t kSpareQueries = 16;
+constexpr std::uint64_t kSpareQueryShare = 8;
+
+std::uint64_t spare_queries(const Work& work) noexcept {
+  return work.probe.queries() + kSpareQueries + work.probe.queries() / kSpareQueryShare;
+}
+
+bool children_in_front(const TestTree& tree, const Node& parent) noexcept {
+  for (std::uint32_t c = parent.first_child; c != kNone; c = tree[c].next_sibling) {
+    if (!tree.in_front(c)) return false;
+  }
+  return true;
+}
+
+bool children_rest(const Work& work, const Node& parent) noexcept {
+  const TestTree& tree = work.tree;
+  for (std::uint32_t c = parent.first_child; c != kNone; c = tree[c].next_sibling) {
+    if (work.is_near(tree[c])) return false;
+  }
+  return true;
+}
+
+/// Whether the parent gives no contact, nor does anything below it.
+bool raise_at_rest(Work& work, std::uint32_t parent) noexcept {
+  Node& node = work.tree[parent];
+  if (!children_rest(work, node) || (work.is_near(node) && !work.rests(node))) return false;
+  work.tree.collapse(parent);
+  node.contact = 0;
+  clear(node, kOfThisTick);
+  return true;
+}
+
+/// The contacts below it are this tick's; from the next one on there is its own.
+bool raise_to_surface(Work& work, std::uint32_t parent) noexcept {
+  Node& node = work.tree[parent];
+  if (!may_stop_on_surface(work, node) || !work.is_near(node)) return false;
+  const SurfaceStop surface = probe_surface(work, node);
+  if (!surface.stops) return false;
+  work.tree.collapse(parent);
+  keep_on_surface(work.pair_of(node), node, surface.contact);
+  clear(node, kOfThisTick);
+  work.stopped.add(node, parent);
+  return true;
+}
+
+void renew_detail(Work& work, std::uint32_t parent) noexcept {
+  Node& node = work.tree[parent];
+  if (!work.rules.interpolate || work.only_culls(node) || !work.is_near(node)) return;
+  const PairState& pair = work.pair_of(node);
+  const convex::Distance d = work.probe.own(pair, node);
+  node.excess = static_cast<float>(
+      detail(pair, piece_a(pair, node), piece_b(pair, node), d, work.rules).excess);
+  note_blending(work, parent);
+}
+
+}  // namespace
+
+void raise(Work& work) noexcept {
+  TestTree& tree = work.tree;
+  const std::uint64_t end = spare_queries(work);
+  const std::size_t scan = kRaiseScan + tree.front().size() / kRaiseScanShare;
+  std::size_t& next = work.memory.raise_next;
+  for (std::size_t i = 0; i < scan && work.probe.queries() < end; ++i) {
+    if (work.out_of_budget()) return;
+    if (next >= tree.front().size()) next = 0;
+    const std::uint32_t parent = tree[tree.front()[next++]].parent;
+    if (parent == kNone) continue;
+    const bool raised = children_in_front(tree, tree[parent]) &&
+                        (raise_at_rest(work, parent) || raise_to_surface(work, parent));
+    if (!raised && !work.out_of_budget()) renew_detail(work, parent);
+  }
+}
+
+void tighten(Work& work) noexcept {
+  if (work.rules.exact || work.rules.bounds == Bounds::paper) return;
+  for (const std::uint32_t index : work.stopped.all()) {
+    const Node& node = work.tree[index];
+    if (!work.tree.in_front(index) || !work.probe.has_tighter(work.pair_of(node), node)) continue;
+    const double certain_m = work.certain_m(node);
+    work.waiting.push({certain_m, certain_m, index, false});
+  }
+  const std::uint64_t end = spare_queries(work);
+  while (!work.waiting.empty() && work.probe.queries() < end && !work.out_of_budget()) {
+    Node& node = work.tree[work.waiting.top().node];
+    work.waiting.pop();
+    static_cast<void>(work.probe.cull(work.pair_of(node), node));
+  }
+  work.waiting.clear();
+}
+
+}  // namespace palpate::levels

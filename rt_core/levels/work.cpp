@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/levels/work.hpp"
+
+namespace palpate::levels {
+
+bool Work::only_culls(const Node& node) const noexcept {
+  const PairState& pair = pair_of(node);
+  return rules.exact || is_free(piece_a(pair, node)) || is_free(piece_b(pair, node));
+}
+
+bool Work::rests(Node& node) noexcept {
+  const PairState& pair = pair_of(node);
+  if (!only_culls(node)) return rests_apart(node, probe.own(pair, node));
+  static_cast<void>(probe.cull(pair, node));
+  set_rest(pair, node, certain_now(pair, node));
+  return !is_near(node);
+}
+
+bool Work::rests_apart(Node& node, const convex::Distance& own) noexcept {
+  const PairState& pair = pair_of(node);
+  if (own.lower_bound >= pair.delta && certain_now(pair, node) < pair.delta &&
+      probe.has_tighter(pair, node) && !meter.out_of_units()) {
+    static_cast<void>(probe.cull(pair, node));
+  }
+  const double certain = certain_now(pair, node);
+  set_rest(pair, node, own.lower_bound < certain ? own.lower_bound : certain);
+  return !is_near(node);
+}
+
+void Work::leave_unresolved(double lower_m, const Node& node) noexcept {
+  if (lower_m < result.unresolved_lower_m) result.unresolved_lower_m = lower_m;
+  const PairState& pair = pair_of(node);
+  const image::Piece& a = piece_a(pair, node);
+  const image::Piece& b = piece_b(pair, node);
+  const float size = a.radius > b.radius ? a.radius : b.radius;
+  const float missing = node.s_star < size ? node.s_star : size;  // free levels have no metric
+  if (static_cast<double>(missing) > result.s_worst) result.s_worst = static_cast<double>(missing);
+}
+
+void Work::leave(std::uint32_t index, double lower_m) noexcept {
+  Node& node = tree[index];
+  const PairState& pair = pair_of(node);
+  leave_unresolved(lower_m, node);
+  if (node.contact == 0) return;
+  const LeafContact contact = remeasured(pair, node);
+  if (contact.found && contact.distance < pair.delta) add_contact(node, contact);
+}
+
+void Work::add_contact(Node& node, const LeafContact& contact) noexcept {
+  if (report.add(pair_of(node), node, contact)) return;
+  result.truncated_by_memory = true;
+  leave_unresolved(certain_m(node), node);
+}
+
+}  // namespace palpate::levels

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the stages of one query share: start, refine, interpolate, upkeep.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "rt_core/levels/levels_engine.hpp"
+#include "rt_core/levels/probe.hpp"
+#include "rt_core/levels/report.hpp"
+#include "rt_core/levels/stopped.hpp"
+#include "rt_core/levels/waiting.hpp"
+
+namespace palpate::levels {
+
+/// Approximates the surface below it.
+inline bool is_simplified(const image::Piece& piece) noexcept {
+  return piece.surface_deviation > 0 || piece.hausdorff > 0;
+}
+
+struct Work {
+  Work(QueryMemory& query_memory, const Rules& query_rules, Meter& query_meter) noexcept
+      : memory(query_memory),
+        tree(query_memory.tree),
+        rules(query_rules),
+        meter(query_meter),
+        probe(query_rules, query_meter),
+        report(query_memory.contacts),
+        waiting(query_memory.waiting),
+        stopped(query_memory.stopped) {}
+
+  [[nodiscard]] PairState& pair_of(const Node& node) const noexcept {
+    return memory.pairs[node.pair];
+  }
+  [[nodiscard]] bool is_near(const Node& node) const noexcept {
+    return levels::is_near(pair_of(node), node);
+  }
+  [[nodiscard]] double certain_m(const Node& node) const noexcept {
+    const PairState& pair = pair_of(node);
+    return certain_now(pair, node) * pair.unit_m;
+  }
+  [[nodiscard]] bool out_of_budget() const noexcept {
+    return meter.out_of_units() || meter.out_of_time();
+  }
+
+  /// Gives no contact itself, but has to be split wherever it is near.
+  [[nodiscard]] bool only_culls(const Node& node) const noexcept;
+
+  /// Measures a node that is near: true where it and what is below it give no contact at the
+  /// present poses. A query or two.
+  bool rests(Node& node) noexcept;
+
+  /// The same with the query of its own hulls at hand.
+  bool rests_apart(Node& node, const convex::Distance& own) noexcept;
+
+  /// Notes what is not resolved, for the certificate.
+  void leave_unresolved(double lower_m, const Node& node) noexcept;
+
+  /// A node that is not resolved keeps its bound and its last contact, re-measured at the material
+  /// points.
+  void leave(std::uint32_t index, double lower_m) noexcept;
+
+  /// Reports the contact of a node, or that there was no room for it.
+  void add_contact(Node& node, const LeafContact& contact) noexcept;
+
+  QueryMemory& memory;
+  TestTree& tree;
+  const Rules& rules;
+  Meter& meter;
+  Probe probe;
+  Report report;
+  WaitQueue waiting;
+  Stopped stopped;
+  QueryResult result{.unresolved_lower_m = std::numeric_limits<double>::infinity()};
+};
+
+}  // namespace palpate::levels

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/bench/scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "host_bake/mesh/check.hpp"
+#include "host_bake/models/models.hpp"
+
+namespace palpate::bench {
+namespace {
+
+constexpr Limits kLimits{.nodes = 1u << 19, .contacts = 1u << 16};
+
+Vec3d centre_of(const Body& body) {
+  const double* c = body.view.header->centre_m;
+  return {c[0], c[1], c[2]};
+}
+
+Quat turned(double x, double y, double z) {
+  const double n = std::sqrt(1 + x * x + y * y + z * z);
+  return {1 / n, x / n, y / n, z / n};
+}
+
+/// Distance at a pose, or `most`.
+double distance_at(Bench& wide, const Pose& pose, double most) {
+  const TickResult r = wide.tick_at(pose);
+  return r.contacts.empty() ? most : r.min_distance_m;
+}
+
+/// Slides over the other body at a distance of about 0.4 delta.
+Pose sliding(Bench& wide, const Body& a, const Body& b, double delta, double reach, int i) {
+  const double u = 0.0035 * i;
+  const double height = std::sin(0.3 * u);
+  const Vec3d out{std::cos(u) * std::cos(0.3 * u), std::sin(u) * std::cos(0.3 * u), height};
+  Pose pose{{}, turned(0.3 * std::sin(0.5 * u), 0.5 * u, 0.2 * u)};
+  const double apart = a.view.header->radius_m + b.view.header->radius_m;
+  pose.position_m = centre_of(b) + apart * out - rotation(pose.orientation) * centre_of(a);
+  for (int k = 0; k < 40; ++k) {
+    const double step = distance_at(wide, pose, reach) - 0.4 * delta;
+    pose.position_m -= step * out;
+    if (std::abs(step) < 1e-3 * delta) break;
+  }
+  return pose;
+}
+
+/// Small turns where it lies, pressed in a turning direction until about 0.1 delta is left.
+Pose pressed(Bench& wide, const Body& a, double delta, int i) {
+  const double u = 0.0035 * i;
+  const Vec3d to{0.7 * std::cos(7 * u), 0.7 * std::sin(7 * u), std::cos(2 * u)};
+  Pose pose{{},
+            turned(8e-4 * std::sin(2 * u), 6e-4 * std::sin(3 * u + 1), 1e-3 * std::sin(1.3 * u))};
+  pose.position_m = centre_of(a) - rotation(pose.orientation) * centre_of(a);
+  double step = 0.3 * delta / norm(to);
+  for (int k = 0; k < 14; ++k) {
+    Pose next = pose;
+    next.position_m += step * to;
+    if (distance_at(wide, next, delta) > 0.1 * delta) {
+      pose = next;
+    } else {
+      step *= 0.5;
+    }
+  }
+  return pose;
+}
+
+}  // namespace
+
+Body::Body(const char* model, double delta_rel, bake::ForEngine engine) {
+  const bake::Mesh mesh = bake::make_model(model);
+  bake::BakeOptions options;
+  options.engine = engine;
+  options.delta_rel = delta_rel;
+  bake::BakeReport report;
+  image =
+      std::make_unique<bake::AlignedCopy>(bake::bake(mesh, bake::check(mesh), options, {}, report));
+  if (validate(image->bytes(), view) != Status::ok) std::abort();
+}
+
+Bench::Bench(const Body& a, const Body& b, const Settings& settings)
+    : views_{a.view, b.view}, settings_(settings) {
+  bytes_ = required_bytes(scene(), kLimits, settings_.engine);
+  memory_.reset(new (std::align_val_t(64)) std::byte[bytes_]);
+  forget();
+}
+
+void Bench::forget() {
+  if (create(scene(), settings_, kLimits, {memory_.get(), bytes_}, engine_) != Status::ok) {
+    std::abort();
+  }
+}
+
+TickResult Bench::tick_at(const Pose& pose, const Budget& budget) {
+  const Pose poses[2] = {pose, {}};
+  TickResult result;
+  if (tick(*engine_, poses, budget, result) != Status::ok) std::abort();
+  return result;
+}
+
+std::vector<Pose> motion(const SceneName& scene, const Body& a, const Body& b, double delta_m,
+                         int ticks) {
+  const double radius = std::min(a.view.header->radius_m, b.view.header->radius_m);
+  const double reach = scene.interlock ? delta_m : 0.3 * radius;
+  Bench wide(a, b, {.engine = EngineKind::regions, .delta_m = reach});
+  std::vector<Pose> poses;
+  poses.reserve(static_cast<std::size_t>(ticks));
+  for (int i = 0; i < ticks; ++i) {
+    poses.push_back(scene.interlock ? pressed(wide, a, delta_m, i)
+                                    : sliding(wide, a, b, delta_m, reach, i));
+  }
+  return poses;
+}
+
+double nrmse(const std::vector<Vec3d>& forces, const std::vector<Vec3d>& truth, std::size_t first) {
+  double peak = 0;
+  for (const Vec3d& force : truth) peak = std::max(peak, norm(force));
+  double sum = 0;
+  for (std::size_t i = first; i < forces.size(); ++i) sum += squared_norm(forces[i] - truth[i]);
+  if (forces.size() <= first || peak == 0) return 0;
+  return std::sqrt(sum / static_cast<double>(forces.size() - first)) / peak;
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
+}  // namespace palpate::bench

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two detailed objects and a motion of one about the other, for the benchmarks of both engines.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <span>
+#include <vector>
+
+#include "host_bake/bake.hpp"
+#include "host_bake/pack/aligned.hpp"
+#include "rt_core/palpate_rt.hpp"
+
+namespace palpate::bench {
+
+struct SceneName {
+  const char* name;
+  const char* a;
+  const char* b;
+  bool interlock;  ///< as modelled they interlock with a small clearance
+};
+
+/// A model, baked in memory.
+struct Body {
+  Body(const char* model, double delta_rel, bake::ForEngine engine);
+  std::unique_ptr<bake::AlignedCopy> image;
+  ImageView view;
+};
+
+/// An engine over two bodies that can forget all it knows.
+class Bench {
+ public:
+  Bench(const Body& a, const Body& b, const Settings& settings);
+  void forget();
+  /// b stays at its origin.
+  TickResult tick_at(const Pose& pose, const Budget& budget = {});
+  [[nodiscard]] const Settings& settings() const { return settings_; }
+
+ private:
+  struct Free {
+    void operator()(std::byte* p) const { ::operator delete[](p, std::align_val_t(64)); }
+  };
+  [[nodiscard]] Scene scene() const { return {views_, pairs_, 0}; }
+
+  std::vector<ImageView> views_;
+  std::vector<BodyPair> pairs_{{0, 1}};
+  Settings settings_;
+  std::size_t bytes_ = 0;
+  std::unique_ptr<std::byte[], Free> memory_;
+  Engine* engine_ = nullptr;
+};
+
+/// Poses of a, found with the region engine. Interlocking bodies: small turns where they lie,
+/// pressed in a turning direction until about 0.1 delta is left. Others: slides over the other body
+/// at a distance of about 0.4 delta.
+std::vector<Pose> motion(const SceneName& scene, const Body& a, const Body& b, double delta_m,
+                         int ticks);
+
+/// Root mean square of the differences over that of their largest truth, from tick `first` on.
+double nrmse(const std::vector<Vec3d>& forces, const std::vector<Vec3d>& truth, std::size_t first);
+
+double mean(const std::vector<double>& values);
+
+}  // namespace palpate::bench
