@@ -75,6 +75,7 @@ std::string trade_plot(std::span<const SweepRow> rows) {
   std::sort(deltas_m.begin(), deltas_m.end());
   deltas_m.erase(std::unique(deltas_m.begin(), deltas_m.end()), deltas_m.end());
   std::vector<Panel> panels;
+  panels.reserve(deltas_m.size());
   for (const double delta_m : deltas_m) panels.push_back(trade_panel(rows, delta_m));
   return to_svg(panels);
 }
