@@ -93,6 +93,12 @@ palpate_status palpate_create(const palpate_scene* scene, const palpate_settings
                               const palpate_limits* limits, void* memory, size_t size,
                               palpate_engine** out);
 
+/* Makes an engine of a copy of another one's memory, at any 64-byte boundary: the first
+ * palpate_required_bytes() bytes, copied between ticks. Same scene (equal images), limits and
+ * engine; same build. See workspace.hpp. */
+palpate_status palpate_restore(const palpate_scene* scene, const palpate_limits* limits,
+                               uint32_t engine, void* memory, size_t size, palpate_engine** out);
+
 palpate_status palpate_configure(palpate_engine* engine, const palpate_settings* settings);
 
 typedef struct palpate_pose {

@@ -8,6 +8,7 @@
 #include "rt_core/base/arena.hpp"
 #include "rt_core/palpate.h"
 #include "rt_core/palpate_rt.hpp"
+#include "rt_core/workspace.hpp"
 
 /// What palpate_create() puts in front of the engine.
 struct palpate_engine {
@@ -187,6 +188,28 @@ palpate_status palpate_create(const palpate_scene* scene, const palpate_settings
       {static_cast<std::byte*>(memory) + palpate::kFront, size - palpate::kFront}, front->engine);
   if (status == Status::ok) *out = front;
   return palpate::code(status);
+}
+
+palpate_status palpate_restore(const palpate_scene* scene, const palpate_limits* limits,
+                               uint32_t engine, void* memory, size_t size, palpate_engine** out) {
+  if (!palpate::sound(scene) || limits == nullptr || engine > PALPATE_REGIONS ||
+      memory == nullptr || out == nullptr) {
+    return PALPATE_BAD_ARGUMENT;
+  }
+  palpate::Arena arena({static_cast<std::byte*>(memory), size}, palpate::Arena::Contents::kept);
+  const std::span<palpate_engine> kept = arena.array<palpate_engine>(1);
+  if (kept.empty()) return palpate::code(Status::not_enough_memory);
+  palpate::Engine* found = nullptr;
+  const Status status = palpate::restore(
+      palpate::scene_of(*scene), palpate::limits_of(*limits),
+      static_cast<palpate::EngineKind>(engine),
+      {static_cast<std::byte*>(memory) + palpate::kFront, size - palpate::kFront}, found);
+  if (status != Status::ok) return palpate::code(status);
+  kept[0].bodies = scene->bodies;
+  kept[0].engine = found;
+  kept[0].contacts = {};  // those of the last tick are read before the copy is made
+  *out = kept.data();
+  return PALPATE_OK;
 }
 
 palpate_status palpate_configure(palpate_engine* engine, const palpate_settings* settings) {

@@ -43,6 +43,10 @@ class Meter {
     const double in_time = time / static_cast<double>(query_ns);
     return in_time < units ? in_time : units;
   }
+  /// Since the meter was made; 0 without a clock.
+  [[nodiscard]] std::uint64_t elapsed_ns() const noexcept {
+    return budget_.clock_ns != nullptr ? now_ns() - start_ns_ : 0;
+  }
   /// From when the meter was made to begin_tail(); 0 without a clock.
   [[nodiscard]] std::uint64_t refined_ns() const noexcept { return tail_start_ns_ - start_ns_; }
   [[nodiscard]] bool out_of_units() const noexcept { return used_ >= budget_.units; }

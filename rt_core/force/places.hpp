@@ -30,6 +30,9 @@ class Places {
   Places() = default;
   explicit Places(std::span<Place> table) noexcept : table_(table) {}
 
+  /// Tells where the table is now: its values stay.
+  void attach(std::span<Place> table) noexcept { table_ = table; }
+
   /// Begins a tick with another grid. @param width_m  of a cube; 0: every contact keeps its mass
   void begin(double width_m) noexcept;
 

@@ -59,7 +59,7 @@ class Group {
     if (d.lower_bound >= pair_.delta) return {};
     const LeafContact contact = leaf_contact(pair_, a, b, d, parent_.own, pair_.delta,
                                              work_.meter.queries_left(), *work_.memory.scratch);
-    work_.probe.charge(contact.queries);
+    work_.probe.charge_parts(contact.queries);
     if (!contact.found || contact.interrupted || contact.distance >= pair_.delta) return {};
     keep(pair_, a, b, contact, parent_);
     return contact;

@@ -36,19 +36,25 @@ QueryResult finish(Work& work) noexcept {
 
 }  // namespace
 
-QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter) noexcept {
+QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally) noexcept {
   ++memory.ticks;
-  Work work(memory, rules, meter);
+  Work work(memory, rules, meter, tally);
   start(work);
+  tally.lap(Stage::start, meter);
   refine(work);
+  tally.lap(Stage::refine, meter);
   if (!work.result.truncated_by_time && !work.result.truncated_by_units) {
     if (rules.interpolate && !rules.exact) interpolate(work);
+    tally.lap(Stage::interpolate, meter);
     raise(work);
     tighten(work);
+    tally.lap(Stage::upkeep, meter);
   }
   meter.begin_tail();
   settle(work);
-  return finish(work);
+  const QueryResult found = finish(work);
+  tally.lap(Stage::settle, meter);
+  return found;
 }
 
 }  // namespace palpate::levels

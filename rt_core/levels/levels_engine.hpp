@@ -8,6 +8,7 @@
 #include <span>
 
 #include "rt_core/base/meter.hpp"
+#include "rt_core/base/tally.hpp"
 #include "rt_core/convex/penetration.hpp"
 #include "rt_core/levels/body_pair.hpp"
 #include "rt_core/levels/rules.hpp"
@@ -56,6 +57,6 @@ struct QueryResult {
 /// loses detail only. Departure: nearest first within what has to be measured anyway, so that
 /// forces are renewed before detail is added. Cost: the budget, plus one leaf contact, plus
 /// O(front).
-QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter) noexcept;
+QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally) noexcept;
 
 }  // namespace palpate::levels

@@ -88,6 +88,14 @@ void Probe::seed(const PairState& pair, Node& node, Vec3d towards_a) noexcept {
                node.culling);
 }
 
+void Probe::note(const convex::Distance& d) noexcept {
+  if (d.state == convex::State::gave_up) capped_ = true;
+  tally_.count([&](auto& counters) {
+    counters.iterations += d.iterations;
+    counters.warm_queries += d.iterations <= 1 ? 1u : 0u;
+  });
+}
+
 double Probe::rest_margin(const PairState& pair, const Node& node) const noexcept {
   if (!rules_.motion_bounds) return 0;
   return kRestTicks * (pair.last_travel + pair.last_turn * static_cast<double>(node.reach));
@@ -104,7 +112,8 @@ convex::Distance Probe::cull(const PairState& pair, Node& node) noexcept {
       convex::distance(culling_hull_of(*pair.image_a, a, pair.scale_a),
                        culling_hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a,
                        pair.delta + residual + rest_margin(pair, node), node.culling);
-  if (d.state == convex::State::gave_up) capped_ = true;
+  note(d);
+  tally_.count([](auto& counters) { ++counters.culling_queries; });
   if (node.contact == 0 && !overlaps(d)) node.witness_a = vec_cast<float>(d.normal);
   prove(pair, node, overlaps(d) ? overlap_bound(pair, node) : d.lower_bound - residual);
   return d;
@@ -119,7 +128,8 @@ convex::Distance Probe::own(const PairState& pair, Node& node) noexcept {
   const convex::Distance d = convex::distance(hull_of(*pair.image_a, a, pair.scale_a),
                                               hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a,
                                               pair.delta + h + rest_margin(pair, node), node.own);
-  if (d.state == convex::State::gave_up) capped_ = true;
+  note(d);
+  tally_.count([](auto& counters) { ++counters.own_queries; });
   prove(pair, node, overlaps(d) ? overlap_bound(pair, node) : d.lower_bound - h);
   return d;
 }

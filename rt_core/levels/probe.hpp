@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "rt_core/base/meter.hpp"
+#include "rt_core/base/tally.hpp"
 #include "rt_core/levels/body_pair.hpp"
 #include "rt_core/levels/rules.hpp"
 #include "rt_core/levels/test_tree.hpp"
@@ -39,7 +40,8 @@ void begin(const PairState& pair, Node& node, double inherited) noexcept;
 /// Does the queries, charges them, and proves the bounds that follow for the original surface.
 class Probe {
  public:
-  Probe(const Rules& rules, Meter& meter) noexcept : rules_(rules), meter_(meter) {}
+  Probe(const Rules& rules, Meter& meter, Tally& tally) noexcept
+      : rules_(rules), meter_(meter), tally_(tally) {}
 
   /// Of the culling hulls, exact up to delta and a little more, so that a node rests for some
   /// ticks. With Bounds::paper of the hulls themselves, widened by h (eq. 5). certain_now() then
@@ -58,18 +60,25 @@ class Probe {
            (piece_a(pair, node).culling_vertices != 0 || piece_b(pair, node).culling_vertices != 0);
   }
 
-  void charge(std::uint64_t queries) noexcept {
-    meter_.charge(queries);
-    queries_ += queries;
+  /// Charges queries of the parts of open patches.
+  void charge_parts(std::uint64_t queries) noexcept {
+    charge(queries);
+    tally_.count([&](auto& counters) { counters.part_queries += queries; });
   }
   [[nodiscard]] std::uint64_t queries() const noexcept { return queries_; }
   [[nodiscard]] bool iteration_cap_met() const noexcept { return capped_; }
 
  private:
+  void charge(std::uint64_t queries) noexcept {
+    meter_.charge(queries);
+    queries_ += queries;
+  }
+  void note(const convex::Distance& d) noexcept;
   [[nodiscard]] double rest_margin(const PairState& pair, const Node& node) const noexcept;
 
   const Rules& rules_;
   Meter& meter_;
+  Tally& tally_;
   std::uint64_t queries_ = 0;
   bool capped_ = false;
 };

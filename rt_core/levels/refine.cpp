@@ -31,7 +31,7 @@ void wait_for_split(Work& work, std::uint32_t index) noexcept {
   const Node& node = work.tree[index];
   const PairState& pair = work.pair_of(node);
   const double certain = certain_now(pair, node);
-  work.waiting.push({rank(work, node, certain), certain * pair.unit_m, index, true});
+  work.wait({rank(work, node, certain), certain * pair.unit_m, index, true});
 }
 
 /// Until it is measured, a child stands where its parent did.
@@ -64,6 +64,10 @@ void split(Work& work, std::uint32_t index) noexcept {
     work.leave(index, work.certain_m(parent));
     return;
   }
+  work.tally.count([&](auto& counters) {
+    ++counters.splits;
+    raise_mark(counters.most_nodes, work.tree.used_nodes());
+  });
   note_blending(work, index);
   const Vec3d towards_a = direction(pair, parent);
   for (std::uint32_t c = parent.first_child; c != kNone; c = work.tree[c].next_sibling) {
@@ -91,7 +95,7 @@ void touch(Work& work, Node& node, const convex::Distance& d, bool stops) noexce
   const Piece& b = piece_b(pair, node);
   const LeafContact contact = leaf_contact(pair, a, b, d, node.own, pair.delta,
                                            work.meter.queries_left(), *work.memory.scratch);
-  work.probe.charge(contact.queries);
+  work.probe.charge_parts(contact.queries);
   node.contact = 0;
   if (contact.interrupted) {
     work.result.truncated_by_units = true;

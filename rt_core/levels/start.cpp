@@ -96,8 +96,7 @@ void wait_if_near(Work& work, std::uint32_t index) noexcept {
   const PairState& pair = work.pair_of(node);
   const bool later = work.only_culls(node);
   const double certain = certain_now(pair, node);
-  work.waiting.push(
-      {later ? rank(work, node, certain) : certain, certain * pair.unit_m, index, later});
+  work.wait({later ? rank(work, node, certain) : certain, certain * pair.unit_m, index, later});
 }
 
 double rank(const Work& work, const Node& node, double lower) noexcept {

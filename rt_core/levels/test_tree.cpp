@@ -5,12 +5,22 @@
 
 namespace palpate::levels {
 
-TestTree::TestTree(std::span<Node> nodes, std::span<std::uint32_t> front,
-                   std::span<std::uint32_t> blending) noexcept
-    : nodes_(nodes), front_(front), blending_(blending) {
+void TestTree::attach(std::span<Node> nodes, std::span<std::uint32_t> front,
+                      std::span<std::uint32_t> blending) noexcept {
   PALPATE_ASSERT(nodes.size() == front.size() && nodes.size() == blending.size());
+  nodes_ = nodes;
+  front_ = front;
+  blending_ = blending;
+}
+
+void TestTree::clear() noexcept {
+  front_size_ = blending_size_ = free_count_ = 0;
+  free_head_ = kNone;
   // Lowest index first, so that the order of nodes is the same on every run.
-  for (std::size_t i = nodes.size(); i > 0; --i) give_back(static_cast<std::uint32_t>(i - 1));
+  for (std::size_t i = nodes_.size(); i > 0; --i) {
+    nodes_[i - 1] = Node{};
+    give_back(static_cast<std::uint32_t>(i - 1));
+  }
 }
 
 std::uint32_t TestTree::take() noexcept {

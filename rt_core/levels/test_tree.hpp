@@ -69,10 +69,13 @@ inline void clear(Node& node, std::uint8_t flags) noexcept {
 /// without a walk over the front.
 class TestTree {
  public:
-  TestTree() = default;
+  /// Tells where the nodes are, or are now: their values stay.
   /// @param nodes, front, blending  of equal length: the capacity
-  TestTree(std::span<Node> nodes, std::span<std::uint32_t> front,
-           std::span<std::uint32_t> blending) noexcept;
+  void attach(std::span<Node> nodes, std::span<std::uint32_t> front,
+              std::span<std::uint32_t> blending) noexcept;
+
+  /// Empties the pool.
+  void clear() noexcept;
 
   /// A new tree of one node. Returns its index, or kNone where the pool is empty.
   std::uint32_t add_root(std::uint16_t pair, std::uint32_t piece_a, std::uint32_t piece_b) noexcept;
@@ -101,6 +104,7 @@ class TestTree {
   [[nodiscard]] Node& operator[](std::uint32_t node) noexcept { return nodes_[node]; }
   [[nodiscard]] const Node& operator[](std::uint32_t node) const noexcept { return nodes_[node]; }
   [[nodiscard]] std::uint32_t free_nodes() const noexcept { return free_count_; }
+  [[nodiscard]] std::size_t used_nodes() const noexcept { return nodes_.size() - free_count_; }
 
  private:
   std::uint32_t take() noexcept;

@@ -27,6 +27,11 @@ bool Work::rests_apart(Node& node, const convex::Distance& own) noexcept {
   return !is_near(node);
 }
 
+void Work::wait(const Waiting& item) noexcept {
+  waiting.push(item);
+  tally.count([&](auto& counters) { raise_mark(counters.most_waiting, waiting.items().size()); });
+}
+
 void Work::leave_unresolved(double lower_m, const Node& node) noexcept {
   if (lower_m < result.unresolved_lower_m) result.unresolved_lower_m = lower_m;
   const PairState& pair = pair_of(node);

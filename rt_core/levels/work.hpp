@@ -19,12 +19,14 @@ inline bool is_simplified(const image::Piece& piece) noexcept {
 }
 
 struct Work {
-  Work(QueryMemory& query_memory, const Rules& query_rules, Meter& query_meter) noexcept
+  Work(QueryMemory& query_memory, const Rules& query_rules, Meter& query_meter,
+       Tally& query_tally) noexcept
       : memory(query_memory),
         tree(query_memory.tree),
         rules(query_rules),
         meter(query_meter),
-        probe(query_rules, query_meter),
+        tally(query_tally),
+        probe(query_rules, query_meter, query_tally),
         report(query_memory.contacts),
         waiting(query_memory.waiting),
         stopped(query_memory.stopped) {}
@@ -53,6 +55,9 @@ struct Work {
   /// The same with the query of its own hulls at hand.
   bool rests_apart(Node& node, const convex::Distance& own) noexcept;
 
+  /// Puts something on the queue.
+  void wait(const Waiting& item) noexcept;
+
   /// Notes what is not resolved, for the certificate.
   void leave_unresolved(double lower_m, const Node& node) noexcept;
 
@@ -67,6 +72,7 @@ struct Work {
   TestTree& tree;
   const Rules& rules;
   Meter& meter;
+  Tally& tally;
   Probe probe;
   Report report;
   WaitQueue waiting;

@@ -13,6 +13,12 @@ if(NOT PALPATE_SANITIZE AND NOT PALPATE_COVERAGE)
   endif()
 endif()
 
+# The engine's bits from every compiler and processor at hand: rt_core is built ten times.
+if(NOT PALPATE_SANITIZE AND NOT PALPATE_COVERAGE)
+  add_test(NAME engine.bits_everywhere COMMAND "${CMAKE_CURRENT_SOURCE_DIR}/gates/bits")
+  set_tests_properties(engine.bits_everywhere PROPERTIES LABELS long TIMEOUT 3600)
+endif()
+
 # find_package(Palpate) from an installed copy, as firmware and closed hosts use it.
 if(PALPATE_HOST AND NOT PALPATE_SANITIZE AND NOT PALPATE_COVERAGE AND NOT PALPATE_FUZZ)
   add_test(NAME install.find_package

@@ -191,6 +191,17 @@ TEST_F(Replay, Summary_is_a_line_or_one_json_object_or_nothing) {
   EXPECT_EQ(replay({"--quiet"}).out, "");
 }
 
+TEST_F(Replay, Profile_tells_stages_queries_and_pools) {
+  const auto json = nlohmann::json::parse(replay({"--json", "--profile"}).out)["profile"];
+  EXPECT_EQ(json["ticks"], 6);
+  EXPECT_GT(json["stage_ns"]["refine"], 0);
+  EXPECT_GT(json["own_queries"].get<int>() + json["culling_queries"].get<int>(), 0);
+  EXPECT_GT(json["most_nodes"], 1);
+  EXPECT_GE(json["most_contacts"], 1);
+  const std::string text = replay({"--quiet", "--profile"}).out;
+  EXPECT_EQ(text.find("start "), 0u) << text;
+}
+
 TEST_F(Replay, Refused_input_exits_3_and_writes_nothing) {
   folder_.write("poses.csv", "t,body,px,py,pz,qw,qx,qy,qz\n0,tool,nan,0,0,1,0,0,0\n");
   expect_refusal(replay({"--contacts", at("contacts.csv")}), 3, "poses.csv:2: ");

@@ -12,3 +12,10 @@ target_compile_options(c_interface_loop PRIVATE -Wall -Wextra -Wpedantic -Wconve
 target_link_libraries(c_interface_loop PRIVATE palpate_rt)
 palpate_test(c_interface SOURCES unit/c_interface.cpp LIBS palpate_rt c_interface_loop)
 target_compile_definitions(c_interface PRIVATE PALPATE_DOCS="${PROJECT_SOURCE_DIR}/docs" PALPATE_TESTS="${PROJECT_SOURCE_DIR}/tests")
+
+# The engine's bits under budgets in work units; tests/gates/bits compares compilers and processors.
+add_executable(engine_bits golden/engine_bits.cpp)
+target_compile_options(engine_bits PRIVATE -ffp-contract=off)
+target_link_libraries(engine_bits PRIVATE palpate_flags palpate_rt)
+add_test(NAME engine.bits COMMAND engine_bits "${PROJECT_SOURCE_DIR}/tests/data/bumpy_ball.bin")
+set_tests_properties(engine.bits PROPERTIES LABELS unit)

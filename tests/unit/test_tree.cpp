@@ -11,7 +11,10 @@ namespace palpate::levels {
 namespace {
 
 struct Pool {
-  explicit Pool(std::size_t n) : nodes(n), slots(n), blending(n), tree(nodes, slots, blending) {}
+  explicit Pool(std::size_t n) : nodes(n), slots(n), blending(n) {
+    tree.attach(nodes, slots, blending);
+    tree.clear();
+  }
   std::vector<Node> nodes;
   std::vector<std::uint32_t> slots;
   std::vector<std::uint32_t> blending;

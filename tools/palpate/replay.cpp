@@ -12,6 +12,7 @@
 
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/output_file.hpp"
+#include "tools/palpate/replay_profile.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -66,8 +67,8 @@ Summary summarise(std::span<const TickRow> ticks) {
   return s;
 }
 
-void print_json(const Recording& recording, const Summary& s) {
-  const nlohmann::ordered_json json = {
+void print_json(const Recording& recording, const Summary& s, bool profile) {
+  nlohmann::ordered_json json = {
       {"ticks", recording.ticks.size()},
       {"tick_ns", {{"p50", s.p50_ns}, {"p99", s.p99_ns}, {"max", s.max_ns}}},
       {"contacts_mean", s.contacts_mean},
@@ -75,6 +76,7 @@ void print_json(const Recording& recording, const Summary& s) {
       {"truncated", s.truncated},
       {"image_bytes", recording.image_bytes},
       {"engine_bytes", recording.engine_bytes}};
+  if (profile) json["profile"] = profile_json(*recording.counters);
   std::puts(json.dump().c_str());
 }
 
@@ -136,15 +138,22 @@ void run(const Arguments& a) {
     };
   }
   const Recording recording = replay(scene, track, a.options, listeners);
+  if (a.options.profile && !recording.counters) {
+    throw Failure(kUsage, "this build counts nothing", "--profile",
+                  "configure it with -DPALPATE_COUNTERS=ON");
+  }
   const std::string ticks = ticks_csv(recording.ticks);
   OutputFile ticks_file(a.ticks, std::as_bytes(std::span(ticks)));
   contacts.commit();  // both files or none
   ticks_file.commit();
   const Summary summary = summarise(recording.ticks);
   if (a.json) {
-    print_json(recording, summary);
-  } else if (!a.quiet) {
-    print_text(recording, summary);
+    print_json(recording, summary, a.options.profile);
+  } else {
+    if (!a.quiet) print_text(recording, summary);
+    if (a.options.profile) {
+      std::fputs(profile_text(*recording.counters, recording.limits).c_str(), stdout);
+    }
   }
 }
 
@@ -185,6 +194,9 @@ void add_replay(CLI::App& app) {
       ->add_option("--repeat", a->options.repeat,
                    "replay this often, report the last one with the median times")
       ->check(number_between(1, 1000));
+  command->add_flag("--profile", a->options.profile,
+                    "print what the last repetition was made of: time by stage (means; the sums in "
+                    "--json), queries, high-water marks of the pools");
   command->add_flag("--json", a->json, "print the summary as one JSON object");
   command->add_flag("--quiet", a->quiet, "print no progress and no summary");
   command->callback([a] { run(*a); });

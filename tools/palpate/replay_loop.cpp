@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "tools/palpate/command.hpp"
@@ -30,8 +31,8 @@ class Replay {
         unlimited_(!options.budget_units && !scene.budget_us),
         clock_(options.processor_time ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC) {
     if (options.budget_units) budget_.units = *options.budget_units;
-    if (scene.budget_us) {
-      budget_ns_ = static_cast<std::uint64_t>(*scene.budget_us * 1e3);
+    if (scene.budget_us) budget_ns_ = static_cast<std::uint64_t>(*scene.budget_us * 1e3);
+    if (budget_ns_ || options.profile) {
       budget_.clock_ns = now_ns;
       budget_.clock_context = &clock_;
     }
@@ -56,7 +57,7 @@ class Replay {
     return rows;
   }
 
-  [[nodiscard]] const SceneEngine& engine() const { return engine_; }
+  [[nodiscard]] SceneEngine& engine() { return engine_; }
 
  private:
   TickResult complete_tick(std::size_t i, std::span<const Pose> poses, std::uint64_t& out_ns) {
@@ -70,7 +71,8 @@ class Replay {
   TickResult timed_tick(std::size_t i, std::span<const Pose> poses, std::uint64_t& out_ns) {
     TickResult result;
     const std::uint64_t start_ns = now_ns(&clock_);
-    budget_.deadline_ns = start_ns + budget_ns_;
+    budget_.deadline_ns =
+        budget_ns_ ? start_ns + *budget_ns_ : std::numeric_limits<std::uint64_t>::max();
     const Status status = tick(engine_.engine(), poses, budget_, result);
     out_ns = now_ns(&clock_) - start_ns;
     if (status != Status::ok) {
@@ -97,7 +99,7 @@ class Replay {
   bool unlimited_;
   clockid_t clock_;
   Budget budget_;
-  std::uint64_t budget_ns_ = 0;
+  std::optional<std::uint64_t> budget_ns_;
 };
 
 }  // namespace
@@ -123,6 +125,8 @@ Recording replay(const config::Scene& scene, const PoseTrack& track, const Repla
   }
   out.image_bytes = loop.engine().image_bytes();
   out.engine_bytes = loop.engine().engine_bytes();
+  out.limits = loop.engine().limits();
+  if (const Counters* counted = counters(loop.engine().engine())) out.counters = *counted;
   return out;
 }
 

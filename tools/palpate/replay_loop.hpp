@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "config/scene.hpp"
+#include "rt_core/counters.hpp"
 #include "tools/palpate/poses.hpp"
 #include "tools/palpate/replay_csv.hpp"
 
@@ -21,6 +22,7 @@ struct ReplayOptions {
   /// Times and budgets in processor time of the thread, which does not count when others have the
   /// processor; else in real time.
   bool processor_time = false;
+  bool profile = false;  ///< give the engine a clock, for its stages' times
 };
 
 /// What a replay tells while it runs; each may be empty.
@@ -35,6 +37,8 @@ struct Recording {
   std::vector<TickRow> ticks;
   std::size_t image_bytes = 0;
   std::size_t engine_bytes = 0;
+  Limits limits;                     ///< the scene's, or what it took
+  std::optional<Counters> counters;  ///< absent where the engine counts nothing
 };
 
 /// Replays the track options.repeat times, each with a new engine, so that all repetitions do the

@@ -39,6 +39,7 @@ class SceneEngine {
   /// [bodies] where the scene puts them.
   [[nodiscard]] std::vector<Pose> start_poses() const;
 
+  [[nodiscard]] const Limits& limits() const { return limits_; }
   [[nodiscard]] std::size_t image_bytes() const { return image_bytes_; }
   [[nodiscard]] std::size_t engine_bytes() const { return engine_bytes_; }
 

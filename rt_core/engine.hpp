@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// What stands at the beginning of an engine's memory.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "rt_core/base/tally.hpp"
+#include "rt_core/force/penalty.hpp"
+#include "rt_core/levels/levels_engine.hpp"
+#include "rt_core/palpate_rt.hpp"
+#include "rt_core/regions/regions_engine.hpp"
+
+namespace palpate {
+
+class Engine {
+ public:
+  std::span<const BodyPair> pairs;
+  std::uint64_t made_for = 0;  // scene and limits: what a copy of the memory is good for
+  std::uint32_t bodies = 0;
+  std::uint32_t tool = 0;
+  Settings settings;
+  std::span<Pose> poses;                // of this tick, normalised
+  std::span<levels::PairState> states;  // [pairs]
+  levels::QueryMemory levels;           // of the engine's kind; the other is empty
+  regions::QueryMemory regions;
+  std::span<Contact> contacts;
+  force::Workspace force;
+  [[no_unique_address]] Tally tally;
+  std::uint64_t tail_ns = 0;  // what ticks take from the end of refinement to their own, smoothed
+};
+
+}  // namespace palpate

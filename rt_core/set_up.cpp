@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+// Set-up: the memory of an engine, its settings, and engines that have been moved.
+#include "rt_core/base/arena.hpp"
+#include "rt_core/engine.hpp"
+#include "rt_core/palpate_rt.hpp"
+#include "rt_core/workspace.hpp"
+
+namespace palpate {
+namespace {
+
+bool finite(double v) noexcept { return v - v == 0; }
+bool at_least(double v, double least) noexcept { return v >= least; }  // false for NaN
+
+bool sound(const Settings& s) noexcept {
+  return finite(s.delta_m) && s.delta_m > 0 && finite(s.s0) && at_least(s.s0, 0) &&
+         at_least(s.kappa, 0) && s.bounds <= Bounds::paper && s.order <= Order::ratio &&
+         finite(s.stiffness_N_per_m) && at_least(s.stiffness_N_per_m, 0) &&
+         finite(s.cluster_radius_m) && at_least(s.cluster_radius_m, 0) &&
+         finite(s.force_tolerance_N) && at_least(s.force_tolerance_N, 0) &&
+         at_least(s.max_force_N, 0) && at_least(s.max_torque_Nm, 0);
+}
+
+bool sound(const Scene& scene, const Limits& limits) noexcept {
+  const std::size_t bodies = scene.bodies.size();
+  if (bodies == 0 || bodies > kMaxBodies || scene.pairs.empty() || scene.pairs.size() > kMaxPairs ||
+      scene.tool >= bodies)
+    return false;
+  for (const ImageView& body : scene.bodies) {
+    if (body.header == nullptr) return false;
+  }
+  for (const BodyPair& pair : scene.pairs) {
+    if (pair.a >= bodies || pair.b >= bodies || pair.a == pair.b) return false;
+  }
+  return limits.nodes >= scene.pairs.size() && limits.nodes < levels::kNone &&
+         limits.contacts > 0 && limits.clusters > 0;
+}
+
+/// All memory of an engine: counted, handed out and found again by the same lines.
+struct Layout {
+  std::span<Engine> engine;
+  std::span<levels::PairState> states;
+  std::span<Pose> poses;
+  std::span<Contact> contacts;
+  std::span<force::Felt> felt;
+  std::span<force::Ranked> ranking;
+  std::span<force::Place> places;
+  // Levels engine.
+  std::span<levels::Node> nodes;
+  std::span<std::uint32_t> front, blending, stopped;
+  std::span<levels::Waiting> waiting;
+  std::span<convex::PenetrationScratch> scratch;
+  // Regions engine.
+  std::span<regions::PairFrame> frames;
+  std::span<std::uint32_t> first_state, queue;
+  std::span<regions::RegionState> regions;
+  std::span<regions::Active> active;
+  std::span<regions::Swept> swept;
+  std::span<regions::SearchScratch> search;
+  std::span<regions::CrossingScratch> crossing;
+};
+
+std::size_t regions_of(const Scene& scene, const BodyPair& pair) noexcept {
+  return scene.bodies[pair.a].regions.size();
+}
+
+void lay_out_levels(Arena& arena, const Limits& limits, Layout& out) noexcept {
+  out.nodes = arena.array<levels::Node>(limits.nodes);
+  out.front = arena.array<std::uint32_t>(limits.nodes);
+  out.blending = arena.array<std::uint32_t>(limits.nodes);
+  out.waiting = arena.array<levels::Waiting>(limits.nodes);
+  out.stopped = arena.array<std::uint32_t>(limits.nodes);
+  out.scratch = arena.array<convex::PenetrationScratch>(1);
+}
+
+void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
+  std::size_t all = 0;
+  std::size_t most = 0;
+  for (const BodyPair& pair : scene.pairs) {
+    const std::size_t count = regions_of(scene, pair);
+    all += count;
+    most = count > most ? count : most;
+  }
+  out.frames = arena.array<regions::PairFrame>(scene.pairs.size());
+  out.first_state = arena.array<std::uint32_t>(scene.pairs.size());
+  out.regions = arena.array<regions::RegionState>(all);
+  out.active = arena.array<regions::Active>(all);
+  out.queue = arena.array<std::uint32_t>(all);
+  out.swept = arena.array<regions::Swept>(most);
+  out.search = arena.array<regions::SearchScratch>(1);
+  out.crossing = arena.array<regions::CrossingScratch>(1);
+}
+
+Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKind kind) noexcept {
+  Layout out;
+  out.engine = arena.array<Engine>(1);
+  out.states = arena.array<levels::PairState>(scene.pairs.size());
+  out.poses = arena.array<Pose>(scene.bodies.size());
+  out.contacts = arena.array<Contact>(limits.contacts);
+  out.felt = arena.array<force::Felt>(limits.contacts);
+  out.ranking = arena.array<force::Ranked>(limits.contacts);
+  out.places = arena.array<force::Place>(limits.clusters);
+  if (kind == EngineKind::levels) {
+    lay_out_levels(arena, limits, out);
+  } else {
+    lay_out_regions(arena, scene, out);
+  }
+  return out;
+}
+
+/// Lets a pair of bodies see its images.
+void attach(levels::PairState& pair, const Scene& scene, const BodyPair& bodies) noexcept {
+  pair.image_a = &scene.bodies[bodies.a];
+  pair.image_b = &scene.bodies[bodies.b];
+}
+
+/// Points the engine to its memory and its scene. Values stay as they are.
+Engine& attach(const Layout& layout, const Scene& scene) noexcept {
+  Engine& e = layout.engine[0];
+  e.pairs = scene.pairs;
+  e.poses = layout.poses;
+  e.states = layout.states;
+  e.contacts = layout.contacts;
+  e.force.felt = layout.felt;
+  e.force.ranking = layout.ranking;
+  e.force.places.attach(layout.places);
+  e.levels.pairs = e.regions.pairs = layout.states;
+  e.levels.contacts = e.regions.contacts = layout.contacts;
+  e.levels.tree.attach(layout.nodes, layout.front, layout.blending);
+  e.levels.waiting = layout.waiting;
+  e.levels.stopped = layout.stopped;
+  e.levels.scratch = layout.scratch.data();
+  e.regions.kernels = &regions::best_kernels();
+  e.regions.frames = layout.frames;
+  e.regions.first_state = layout.first_state;
+  e.regions.states = layout.regions;
+  e.regions.active = layout.active;
+  e.regions.queue = layout.queue;
+  e.regions.swept = layout.swept;
+  e.regions.search = layout.search.data();
+  e.regions.crossing = layout.crossing.data();
+  for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
+    attach(layout.states[i], scene, scene.pairs[i]);
+  }
+  return e;
+}
+
+void begin(levels::PairState& pair, const BodyPair& bodies) noexcept {
+  pair.body_a = bodies.a;
+  pair.body_b = bodies.b;
+  const double radius_a = pair.image_a->header->radius_m;
+  const double radius_b = pair.image_b->header->radius_m;
+  pair.unit_m = radius_a > radius_b ? radius_a : radius_b;
+  pair.scale_a = radius_a / pair.unit_m;
+  pair.scale_b = radius_b / pair.unit_m;
+}
+
+void begin_levels(levels::QueryMemory& memory) noexcept {
+  memory.tree.clear();
+  for (std::uint32_t i = 0; i < memory.pairs.size(); ++i) {
+    memory.pairs[i].root = memory.tree.add_root(static_cast<std::uint16_t>(i), 0, 0);
+  }
+}
+
+void begin_regions(const Scene& scene, regions::QueryMemory& memory) noexcept {
+  std::uint32_t first = 0;
+  for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
+    memory.first_state[i] = first;
+    first += static_cast<std::uint32_t>(regions_of(scene, scene.pairs[i]));
+  }
+}
+
+/// Does an image without its finest levels serve these settings against this partner?
+bool is_fine_enough(const ImageView& image, const ImageView& partner,
+                    const Settings& settings) noexcept {
+  const image::Header& header = *image.header;
+  if (header.dropped_levels == 0) return true;
+  const image::Level& finest = image.levels[0];
+  const double ratio = partner.header->radius_m / header.radius_m;
+  const double area = static_cast<double>(partner.levels[0].min_support_area_rel) * ratio * ratio;
+  const double s_m = static_cast<double>(finest.max_surface_deviation_rel) * header.radius_m;
+  return !settings.exact && settings.s0 >= static_cast<double>(header.s0_min) &&
+         area >= static_cast<double>(header.partner_area) &&
+         (s_m <= settings.kappa * settings.delta_m);
+}
+
+bool all_fine_enough(const Engine& engine, const Settings& settings) noexcept {
+  if (settings.engine != EngineKind::levels) return true;
+  for (const levels::PairState& pair : engine.states) {
+    if (!is_fine_enough(*pair.image_a, *pair.image_b, settings) ||
+        !is_fine_enough(*pair.image_b, *pair.image_a, settings)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool serves(const ImageView& image, EngineKind kind) noexcept {
+  return !image.pieces.empty() && (kind == EngineKind::levels || !image.regions.empty());
+}
+
+/// FNV-1a (Fowler, Noll, Vo) of all that the layout and the meaning of an engine's memory follow
+/// from: two engines of one build with the same value can have each other's bytes.
+class Imprint {
+ public:
+  void add(std::uint64_t value) noexcept {
+    for (int i = 0; i < 8; ++i) add_byte(static_cast<std::uint8_t>(value >> (8 * i)));
+  }
+  void add_byte(std::uint8_t byte) noexcept { hash_ = (hash_ ^ byte) * 0x100000001b3u; }
+  [[nodiscard]] std::uint64_t value() const noexcept { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325u;
+};
+
+std::uint64_t imprint(const Scene& scene, const Limits& limits, EngineKind kind) noexcept {
+  Imprint of;
+  for (const std::uint64_t value :
+       {std::uint64_t{sizeof(Engine)}, std::uint64_t{sizeof(levels::Node)},
+        std::uint64_t{limits.nodes}, std::uint64_t{limits.contacts}, std::uint64_t{limits.clusters},
+        static_cast<std::uint64_t>(kind), std::uint64_t{scene.tool}}) {
+    of.add(value);
+  }
+  for (const BodyPair& pair : scene.pairs) of.add((std::uint64_t{pair.a} << 32) | pair.b);
+  for (const ImageView& body : scene.bodies) {
+    for (const std::uint8_t byte : body.header->content_sha256) of.add_byte(byte);
+  }
+  return of.value();
+}
+
+Status check_memory(const Scene& scene, const Limits& limits, EngineKind kind,
+                    std::span<const std::byte> memory) noexcept {
+  if (memory.size() < required_bytes(scene, limits, kind) ||
+      reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::kAlignment != 0) {
+    return Status::not_enough_memory;
+  }
+  return Status::ok;
+}
+
+}  // namespace
+
+std::size_t required_bytes(const Scene& scene, const Limits& limits, EngineKind engine) noexcept {
+  if (!sound(scene, limits)) return 0;
+  Arena count;
+  static_cast<void>(lay_out(count, scene, limits, engine));
+  return count.used();
+}
+
+Status create(const Scene& scene, const Settings& settings, const Limits& limits,
+              std::span<std::byte> memory, Engine*& out_engine) noexcept {
+  if (!sound(scene, limits) || !sound(settings)) return Status::bad_argument;
+  for (const ImageView& body : scene.bodies) {
+    if (!serves(body, settings.engine)) return Status::image_missing_section;
+  }
+  const Status room = check_memory(scene, limits, settings.engine, memory);
+  if (room != Status::ok) return room;
+  Arena arena(memory);
+  Engine& engine = attach(lay_out(arena, scene, limits, settings.engine), scene);
+  engine.made_for = imprint(scene, limits, settings.engine);
+  engine.bodies = static_cast<std::uint32_t>(scene.bodies.size());
+  engine.tool = scene.tool;
+  engine.settings = settings;
+  for (std::size_t i = 0; i < scene.pairs.size(); ++i) begin(engine.states[i], scene.pairs[i]);
+  if (settings.engine == EngineKind::levels) {
+    begin_levels(engine.levels);
+  } else {
+    begin_regions(scene, engine.regions);
+  }
+  if (!all_fine_enough(engine, settings)) return Status::image_too_coarse;
+  out_engine = &engine;
+  return Status::ok;
+}
+
+Status restore(const Scene& scene, const Limits& limits, EngineKind kind,
+               std::span<std::byte> memory, Engine*& out_engine) noexcept {
+  if (!sound(scene, limits)) return Status::bad_argument;
+  const Status room = check_memory(scene, limits, kind, memory);
+  if (room != Status::ok) return room;
+  Arena arena(memory, Arena::Contents::kept);
+  const Layout layout = lay_out(arena, scene, limits, kind);
+  if (layout.engine[0].made_for != imprint(scene, limits, kind)) return Status::bad_argument;
+  out_engine = &attach(layout, scene);
+  return Status::ok;
+}
+
+Status configure(Engine& engine, const Settings& settings) noexcept {
+  if (!sound(settings) || settings.engine != engine.settings.engine) return Status::bad_argument;
+  if (!all_fine_enough(engine, settings)) return Status::image_too_coarse;
+  engine.settings = settings;
+  return Status::ok;
+}
+
+}  // namespace palpate

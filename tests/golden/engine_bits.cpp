@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// The bits of the levels engine: wrenches, contacts and counts of a fixed motion under budgets in
+// work units. They are the same for every compiler, optimisation and processor, and change only
+// together with the engine.
+//
+//   engine_bits IMAGE    prints what it found; exit status 1 where it is not what it has to be
+#include <bit>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <span>
+#include <vector>
+
+#include "rt_core/palpate_rt.hpp"
+
+namespace palpate {
+namespace {
+
+struct Case {
+  const char* name;
+  Settings settings;
+  std::uint64_t units;
+  std::uint64_t hash;
+};
+
+constexpr double kDelta_m = 0.05;
+constexpr std::uint64_t kUnlimited = Budget{}.units;
+const Case kCases[] = {
+    {"exact", {.delta_m = kDelta_m, .exact = true}, kUnlimited, 0x73de5ae68dc7beaa},
+    {"exact, 40 units", {.delta_m = kDelta_m, .exact = true}, 40, 0x13986cd97f97d4b5},
+    {"simplified", {.delta_m = kDelta_m, .s0 = 0.02}, kUnlimited, 0x03d0df2502098e62},
+    {"simplified, 40 units", {.delta_m = kDelta_m, .s0 = 0.02}, 40, 0xee1a86edc15da5d7},
+    {"stop on surface, by ratio",
+     {.delta_m = kDelta_m, .s0 = 0.005, .order = Order::ratio, .stop_on_surface = true},
+     200,
+     0x9d1bb1acb240f414},
+    {"paper's bounds",
+     {.delta_m = kDelta_m, .s0 = 0.02, .bounds = Bounds::paper},
+     200,
+     0xba4e01b8efb4610e},
+};
+constexpr int kTicks = 200;
+
+/// FNV-1a (Fowler, Noll, Vo).
+class Hash {
+ public:
+  void add(std::uint64_t bits) {
+    for (int i = 0; i < 8; ++i) value_ = (value_ ^ ((bits >> (8 * i)) & 0xff)) * 0x100000001b3u;
+  }
+  void add(double v) { add(std::bit_cast<std::uint64_t>(v)); }
+  void add(Vec3d v) {
+    add(v.x);
+    add(v.y);
+    add(v.z);
+  }
+  [[nodiscard]] std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325u;
+};
+
+/// Around the other body, in and out of contact; no function of the C library but sqrt.
+Pose pose_of(int tick) {
+  const double u = 0.02 * tick;
+  const double wave = u - 2 * static_cast<double>(static_cast<int>(u / 2)) - 1;  // -1 to 1
+  const double n = sqrt_of(1 + 0.09 * u * u + 0.25 * wave * wave);
+  const Vec3d out{1, 0.2 * u, 0.3 * wave};
+  const double reach = (2.0 + 0.08 * wave * wave) / norm(out);
+  return {reach * out, {1 / n, 0.3 * u / n, 0, 0.5 * wave / n}};
+}
+
+struct Free {
+  void operator()(std::byte* p) const { ::operator delete[](p, std::align_val_t{64}); }
+};
+
+std::span<std::byte> aligned(std::size_t bytes) {
+  return {new (std::align_val_t{64}) std::byte[bytes], bytes};  // lives as long as the program
+}
+
+std::uint64_t hash_of(const ImageView& image, const Case& test) {
+  const ImageView bodies[2] = {image, image};
+  const BodyPair pairs[1] = {{0, 1}};
+  const Scene scene{bodies, pairs, 0};
+  const Limits limits{.nodes = 1u << 14, .contacts = 1u << 10, .clusters = 1u << 8};
+  Engine* engine = nullptr;
+  const std::span<std::byte> memory = aligned(required_bytes(scene, limits));
+  if (create(scene, test.settings, limits, memory, engine) != Status::ok) return 0;
+  Hash hash;
+  for (int i = 0; i < kTicks; ++i) {
+    const Pose poses[2] = {pose_of(i), {}};
+    TickResult r;
+    if (tick(*engine, poses, {.units = test.units}, r) != Status::ok) return 0;
+    hash.add(r.wrench.force_N);
+    hash.add(r.wrench.torque_Nm);
+    hash.add(r.certificate.error_bound_m);
+    hash.add(static_cast<std::uint64_t>(r.contacts.size()));
+    for (const Contact& c : r.contacts) hash.add(c.distance_m);
+    hash.add(r.queries);
+    hash.add(r.front_nodes);
+  }
+  return hash.value();
+}
+
+bool open(const char* file, ImageView& out) {
+  std::FILE* in = std::fopen(file, "rb");
+  if (in == nullptr) return false;
+  const std::span<std::byte> room = aligned(1u << 20);
+  const std::size_t size = std::fread(room.data(), 1, room.size(), in);
+  std::fclose(in);
+  return validate(room.first(size), out) == Status::ok;
+}
+
+}  // namespace
+}  // namespace palpate
+
+int main(int argc, char** argv) {
+  palpate::ImageView image;
+  if (argc != 2 || !palpate::open(argv[1], image)) {
+    std::fputs("usage: engine_bits IMAGE\n", stderr);
+    return 2;
+  }
+  int failed = 0;
+  for (const palpate::Case& test : palpate::kCases) {
+    const std::uint64_t found = palpate::hash_of(image, test);
+    std::printf("%016llx %s\n", static_cast<unsigned long long>(found), test.name);
+    if (found != test.hash) failed = 1;
+  }
+  return failed;
+}
