@@ -51,6 +51,7 @@ struct Layout {
   std::span<convex::PenetrationScratch> scratch;
   // Regions engine.
   std::span<regions::PairFrame> frames;
+  std::span<regions::Containment> containment;
   std::span<std::uint32_t> first_state, queue;
   std::span<regions::RegionState> regions;
   std::span<regions::Active> active;
@@ -81,6 +82,7 @@ void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
     most = count > most ? count : most;
   }
   out.frames = arena.array<regions::PairFrame>(scene.pairs.size());
+  out.containment = arena.array<regions::Containment>(scene.pairs.size());
   out.first_state = arena.array<std::uint32_t>(scene.pairs.size());
   out.regions = arena.array<regions::RegionState>(all);
   out.active = arena.array<regions::Active>(all);
@@ -131,6 +133,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.levels.scratch = layout.scratch.data();
   e.regions.kernels = &regions::best_kernels();
   e.regions.frames = layout.frames;
+  e.regions.containment = layout.containment;
   e.regions.first_state = layout.first_state;
   e.regions.states = layout.regions;
   e.regions.active = layout.active;

@@ -157,7 +157,7 @@ class Divider {
 }  // namespace
 
 RegionOptions region_options(double delta_rel) {
-  constexpr double kDeltas = 6;
+  constexpr double kDeltas = 8;
   constexpr double kLeast = 0.03;
   constexpr double kMost = 0.25;
   RegionOptions options;

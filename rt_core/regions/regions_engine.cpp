@@ -4,36 +4,32 @@
 #include <limits>
 
 #include "rt_core/base/queue.hpp"
+#include "rt_core/regions/report.hpp"
 
 namespace palpate::regions {
 namespace {
 
-using image::RegionTriangle;
 using levels::PairState;
 
-/// Distances up to delta and this many ticks of the present motion are told apart, so that a region
-/// that is found farther rests for as long; not where that is more than a share of delta, for a
-/// farther limit costs more than the rest saves.
-constexpr double kRestTicks = 4;
-constexpr double kMostRest = 0.5;
+/// Pairs that are farther than the nearest by less than this many ticks of the present motion are
+/// kept, and so the region needs no search for as long; at most a share of delta, for what is
+/// farther costs more than the rest saves; and not where that is no more than a few ticks.
+constexpr double kRestTicks = 6;
+constexpr double kFewestTicks = 3;
+constexpr double kMostRest = 0.4;
+constexpr double kLeastRest = 0.01;
 /// A move by more than this (in units), or by this many delta where that is more, starts anew.
 constexpr double kJump = 0.05;
 constexpr double kJumpDelta = 2;
-/// Rounding of the odometers, in units.
-constexpr double kMotionSlack = 1e-9;
 /// Under a budget an interval is closed to this share of its width at a time.
-constexpr float kStep = 0.1f;
+constexpr float kStep = 0.3f;
 /// Below this an interval is closed: rounding leaves as much.
 constexpr float kClosed = 2 * kRounding;
+/// More than any distance.
+constexpr float kFarthest = 1e18f;
 
 /// Rounded towards minus infinity far enough for float.
 float float_below(double v) noexcept { return static_cast<float>(v - 1e-7 * (v < 0 ? -v : v)); }
-
-Vec3d corner(const RegionTriangle& t, std::uint32_t i, double scale) noexcept {
-  return scale * Vec3d{static_cast<double>(t.corners[3 * i]),
-                       static_cast<double>(t.corners[3 * i + 1]),
-                       static_cast<double>(t.corners[3 * i + 2])};
-}
 
 class Query {
  public:
@@ -46,11 +42,13 @@ class Query {
   QueryResult run() noexcept {
     for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) gather(i);
     measure_witnesses();
-    climb_witnesses();
+    measure_near_pairs();
+    for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) settle_side(i);
     refine();
+    for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) find_way_out(i);
     meter_.begin_tail();
     certify();
-    report();
+    report(memory_, active(), pace_, result_);
     result_.queries = pace_.used();
     result_.near_regions = count_;
     result_.truncated_by_units = truncated_ && pace_.units_ended();
@@ -75,36 +73,33 @@ class Query {
   void sweep_if_lost(std::uint32_t index) noexcept {
     PairState& pair = memory_.pairs[index];
     const double far = kJumpDelta * pair.delta > kJump ? kJumpDelta * pair.delta : kJump;
-    if (!pair.fresh && pair.last_travel + pair.last_turn * pair.scale_a <= far) return;
+    if (!pair.fresh && last_motion(pair) <= far) return;
     pair.fresh = false;
+    memory_.containment[index].doubtful = true;
     const std::span<Swept> swept = memory_.swept.first(pair.image_a->regions.size());
-    sweep(*memory_.kernels, memory_.frames[index], *memory_.search, pace_, limit_of(pair), swept);
+    sweep(*memory_.kernels, memory_.frames[index], *memory_.search, pace_,
+          static_cast<float>(pair.delta + margin_of(pair)), swept);
     for (std::uint32_t i = 0; i < swept.size(); ++i) {
       RegionState& state = memory_.states[memory_.first_state[index] + i];
-      const double lower = static_cast<double>(sqrt_of(swept[i].squared) - kRounding);
       state.seed = swept[i].seed;
-      if (lower > lower_now(pair, index, i)) prove(pair, state, lower);
+      state.near.count = 0;
+      prove(state, pair, i, sqrt_of(swept[i].squared) - kRounding);
     }
   }
 
-  double lower_now(const PairState& pair, std::uint32_t index, std::uint32_t region) noexcept {
-    const RegionState& state = memory_.states[memory_.first_state[index] + region];
-    const double reach = pair.scale_a * static_cast<double>(pair.image_a->regions[region].reach);
-    return static_cast<double>(state.lower) - (pair.travel - state.travel_at) -
-           (pair.turn - state.turn_at) * reach - kMotionSlack;
+  /// Of any point of a, at most.
+  static double last_motion(const PairState& pair) noexcept {
+    return pair.last_travel + pair.last_turn * pair.scale_a;
   }
 
-  static void prove(const PairState& pair, RegionState& state, double lower) noexcept {
-    state.lower = float_below(lower);
-    state.travel_at = pair.travel;
-    state.turn_at = pair.turn;
-  }
-
-  /// Distances up to here are told apart.
-  static float limit_of(const PairState& pair) noexcept {
-    const double rest = kRestTicks * (pair.last_travel + pair.last_turn * pair.scale_a);
-    return static_cast<float>(rest <= kMostRest * pair.delta ? pair.delta + rest : pair.delta) +
-           kClosed;
+  /// How far a region's rest is looked for.
+  static double margin_of(const PairState& pair) noexcept {
+    const double tick = last_motion(pair);
+    const double most = kMostRest * pair.delta;
+    if (kFewestTicks * tick > most) return 0;
+    const double wanted = kRestTicks * tick;
+    const double least = kLeastRest * pair.delta;
+    return wanted > most ? most : wanted > least ? wanted : least;
   }
 
   /// The regions of a pair that may be nearer than delta.
@@ -115,47 +110,160 @@ class Query {
     const std::uint32_t first = memory_.first_state[index];
     const auto regions = pair.image_a->regions;
     for (std::uint32_t i = 0; i < regions.size(); ++i) {
-      const double lower = lower_now(pair, index, i);
-      if (lower >= pair.delta) continue;
+      const RegionState& state = memory_.states[first + i];
+      if (static_cast<double>(state.lower) - way_since(state, pair) >= pair.delta) continue;
+      const double moved_by = moved_since(state, pair, i);
+      if (static_cast<double>(state.lower) - moved_by >= pair.delta) continue;
       Active& item = memory_.active[count_++];
-      item.lower = lower > 0 ? float_below(lower) : 0.0f;
+      item.moved = static_cast<float>(moved_by);
+      item.rest = float_below(static_cast<double>(state.rest) - moved_by);
       item.state = first + i;
       item.region = i;
       item.pair = index;
+      item.climbed = false;
     }
   }
 
   void measure_witnesses() noexcept {
-    Witness* batch[kBatch];
-    std::uint32_t pending = 0;
     for (std::uint32_t i = 0; i < count_; ++i) {
-      const Active& item = active()[i];
-      Witness& witness = state_of(item).witness;
-      if (witness.known()) batch[pending++] = &witness;
-      const bool last_of_pair = i + 1 == count_ || active()[i + 1].pair != item.pair;
-      if (pending > 0 && (pending == kBatch || last_of_pair)) {
-        measure(*memory_.kernels, frame_of_item(item), *memory_.search, pace_, batch, pending);
-        pending = 0;
+      Witness& witness = state_of(active()[i]).witness;
+      if (!witness.known()) continue;
+      const Witness at_last = witness;
+      const PairState& pair = pair_of(active()[i]);
+      if (static_cast<double>(at_last.distance) <= last_motion(pair)) {
+        memory_.containment[active()[i].pair].doubtful = true;
       }
+      witness.distance = kFarthest;
+      measure_soon(i, at_last);
     }
+    flush();
     for (Active& item : active()) widen(item);
   }
 
-  void climb_witnesses() noexcept {
-    for (Active& item : active()) {
-      Witness& witness = state_of(item).witness;
-      const auto delta = static_cast<float>(pair_of(item).delta);
-      if (!witness.known() || item.width <= kClosed || witness.distance >= 2 * delta) continue;
-      climb(*memory_.kernels, frame_of_item(item), *memory_.search, pace_, witness);
-      widen(item);
+  /// Those of the near pairs that may be nearer than the witness now. Where the budget ends this,
+  /// they count as not kept.
+  void measure_near_pairs() noexcept {
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      Active& item = active()[i];
+      const RegionState& state = state_of(item);
+      const float upper = upper_of(item);
+      for (std::uint32_t k = 0; k < state.near.count; ++k) {
+        const Witness& pair = state.near.pairs[k];
+        const float lower = pair.distance - item.moved;
+        if (lower >= upper) break;
+        if (!pace_.go_on()) {
+          item.rest = lower - kRounding < item.rest ? lower - kRounding : item.rest;
+          break;
+        }
+        if (!pair.same_pair(state.witness)) measure_soon(i, pair);
+      }
     }
+    flush();
+    for (Active& item : active()) widen(item);
+  }
+
+  void measure_soon(std::uint32_t index, const Witness& pair) noexcept {
+    if (pending_ == kBatch ||
+        (pending_ > 0 && active()[pending_of_[0]].pair != active()[index].pair)) {
+      flush();
+    }
+    pending_of_[pending_] = index;
+    memory_.search->batch_a[pending_] = pair.a;
+    memory_.search->batch_b[pending_] = pair.b;
+    ++pending_;
+  }
+
+  void flush() noexcept {
+    if (pending_ == 0) return;
+    float distances[kBatch];
+    SearchScratch& scratch = *memory_.search;
+    const PairFrame& frame = frame_of_item(active()[pending_of_[0]]);
+    measure(*memory_.kernels, frame, scratch, pace_, pending_, distances);
+    for (std::uint32_t i = 0; i < pending_; ++i) {
+      Witness& witness = state_of(active()[pending_of_[i]]).witness;
+      if (distances[i] < witness.distance) {
+        witness = {scratch.batch_a[i], scratch.batch_b[i], distances[i]};
+      }
+    }
+    pending_ = 0;
+  }
+
+  /// min(witness, delta)
+  float upper_of(const Active& item) noexcept {
+    const Witness& witness = state_of(item).witness;
+    const auto delta = static_cast<float>(pair_of(item).delta);
+    return witness.known() && witness.distance < delta ? witness.distance : delta;
   }
 
   void widen(Active& item) noexcept {
-    const Witness& witness = state_of(item).witness;
-    const auto delta = static_cast<float>(pair_of(item).delta);
-    const float upper = witness.known() && witness.distance < delta ? witness.distance : delta;
-    item.width = upper > item.lower ? upper - item.lower : 0;
+    const float upper = upper_of(item);
+    item.width = upper > item.rest ? upper - (item.rest > 0 ? item.rest : 0) : 0;
+  }
+
+  bool crosses(std::uint32_t index) noexcept {
+    for (const Active& item : active()) {
+      const Witness& witness = state_of(item).witness;
+      if (item.pair == index && witness.known() && witness.distance <= 0) return true;
+    }
+    return false;
+  }
+
+  /// Surfaces that cross have no inside to speak of, and are looked at once they have parted.
+  void settle_side(std::uint32_t index) noexcept {
+    Containment& kept = memory_.containment[index];
+    if (!kept.doubtful || crosses(index)) return;
+    const Side side = contained(*memory_.kernels, memory_.pairs[index], *memory_.search, pace_);
+    kept.inside = side == Side::inside;
+    kept.doubtful = side == Side::unknown;
+    kept.nearest = {};
+  }
+
+  /// Inside, and no region near the surface: the nearest pair of all becomes the contact.
+  void find_way_out(std::uint32_t index) noexcept {
+    Containment& kept = memory_.containment[index];
+    if (crosses(index)) {
+      kept.inside = false;
+      kept.doubtful = true;
+    }
+    if (!kept.inside || is_near(index)) return;
+    const PairFrame& frame = memory_.frames[index];
+    SearchScratch& scratch = *memory_.search;
+    Witness best = kept.nearest;
+    if (best.known()) {
+      float distances[kBatch];
+      scratch.batch_a[0] = best.a;
+      scratch.batch_b[0] = best.b;
+      measure(*memory_.kernels, frame, scratch, pace_, 1, distances);
+      best.distance = distances[0];
+    }
+    for (std::uint32_t i = 0; i < frame.a->regions.size() && pace_.go_on(); ++i) {
+      const Reach reach{best.known() ? best.distance : kFarthest, 0};
+      const Bounds found = search(*memory_.kernels, frame, scratch, pace_, i, {}, reach);
+      if (found.best.known() && found.best.distance < reach.limit) best = found.best;
+    }
+    kept.nearest = best;
+    if (best.known()) activate(index, best);
+  }
+
+  bool is_near(std::uint32_t index) noexcept {
+    for (const Active& item : active()) {
+      if (item.pair == index && upper_of(item) < static_cast<float>(pair_of(item).delta)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Makes a witness known to the report.
+  void activate(std::uint32_t index, const Witness& witness) noexcept {
+    const std::uint32_t region = memory_.frames[index].a->region_triangles[witness.a].region;
+    const std::uint32_t state = memory_.first_state[index] + region;
+    memory_.states[state].witness = witness;
+    for (const Active& item : active()) {
+      if (item.state == state) return;
+    }
+    const auto rest = static_cast<float>(memory_.pairs[index].delta);
+    memory_.active[count_++] = {.rest = rest, .state = state, .region = region, .pair = index};
   }
 
   void refine() noexcept {
@@ -180,19 +288,32 @@ class Query {
       Active& item = active()[index];
       if (item.width <= kClosed) break;
       open_m -= width_m(item);
-      if (state_of(item).seed != image::kNone) {
-        dive_and_climb(item);
-        open_m += width_m(item);
-        if (truncated_) return;
-        queue.push(index);
-        continue;
-      }
       const auto share = static_cast<float>(share_m / pair_of(item).unit_m);
-      const float step = demand_.limited ? kStep * item.width : 0;
-      close(item, step > share ? step : share);
+      narrow(item, share);
       open_m += width_m(item);
       if (truncated_) return;
       queue.push(index);
+    }
+  }
+
+  /// One step. Under a budget that may end any moment, the cheap ones first: a witness is sought,
+  /// then moved to a nearer one, then the region is searched.
+  void narrow(Active& item, float share) noexcept {
+    if (!demand_.limited) {
+      close(item, share);
+      return;
+    }
+    RegionState& state = state_of(item);
+    const Witness& witness = state.witness;
+    const auto delta = static_cast<float>(pair_of(item).delta);
+    if ((state.seed != image::kNone || !witness.known()) && item.rest <= 0) {
+      dive_and_climb(item);
+    } else if (!item.climbed && witness.known() && witness.distance < 2 * delta) {
+      climb(*memory_.kernels, frame_of_item(item), *memory_.search, pace_, state.witness);
+      end_climb(item);
+    } else {
+      const float step = kStep * item.width;
+      close(item, step > share ? step : share);
     }
   }
 
@@ -204,6 +325,11 @@ class Query {
     if (found.known()) climb(*memory_.kernels, frame, *memory_.search, pace_, found);
     const Witness& old = state.witness;
     if (found.known() && !(old.known() && old.distance < found.distance)) state.witness = found;
+    end_climb(item);
+  }
+
+  void end_climb(Active& item) noexcept {
+    item.climbed = true;
     truncated_ |= !pace_.go_on();
     widen(item);
   }
@@ -221,22 +347,32 @@ class Query {
     }
     const PairState& pair = pair_of(item);
     RegionState& state = state_of(item);
-    // The search's lower bound gives away kRounding, which is part of the interval.
+    // The search's bound gives away kRounding, which is part of the interval.
     const float room = tolerance > kRounding ? tolerance - kRounding : 0;
+    const Reach reach{static_cast<float>(pair.delta) + kClosed,
+                      static_cast<float>(margin_of(pair)) - room};
     const Bounds found = search(*memory_.kernels, frame_of_item(item), *memory_.search, pace_,
-                                item.region, state.witness, limit_of(pair), room);
+                                item.region, state.witness, reach);
     state.witness = found.best;
-    if (found.lower > item.lower) item.lower = found.lower;
     truncated_ |= !found.complete;
-    prove(pair, state, static_cast<double>(item.lower));
+    if (found.rest > item.rest) {
+      item.rest = found.rest;
+      item.moved = 0;
+      state.near = memory_.search->near;
+      prove(state, pair, item.region, found.rest);
+    }
     widen(item);
   }
 
   void certify() noexcept {
     for (const Active& item : active()) {
       const PairState& pair = pair_of(item);
-      const double lower_m = static_cast<double>(item.lower) * pair.unit_m;
-      if (static_cast<double>(item.lower) < pair.delta && lower_m < result_.unresolved_lower_m) {
+      const Witness& witness = state_of(item).witness;
+      const float upper =
+          witness.known() ? witness.distance - kRounding : static_cast<float>(pair.delta);
+      const auto lower = static_cast<double>(item.rest < upper ? item.rest : upper);
+      const double lower_m = (lower > 0 ? lower : 0) * pair.unit_m;
+      if (lower < pair.delta && lower_m < result_.unresolved_lower_m) {
         result_.unresolved_lower_m = lower_m;
       }
       result_.open_m += width_m(item);
@@ -245,141 +381,13 @@ class Query {
     }
   }
 
-  /// Witnesses nearer than delta become contacts, sixteen at a time.
-  void report() noexcept {
-    std::uint32_t batch[kBatch];
-    std::uint32_t pending = 0;
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      const Active& item = active()[i];
-      const Witness& witness = state_of(item).witness;
-      if (witness.known() && witness.distance < static_cast<float>(pair_of(item).delta)) {
-        batch[pending++] = i;
-      }
-      if (pending == kBatch || (i + 1 == count_ && pending > 0)) {
-        report_batch(batch, pending);
-        pending = 0;
-      }
-    }
-  }
-
-  void report_batch(const std::uint32_t (&batch)[kBatch], std::uint32_t count) noexcept {
-    Vec3d origin[kBatch];
-    TriangleLanes& lanes = memory_.search->kernel.lanes;
-    for (std::uint32_t i = 0; i < kBatch; ++i) {
-      origin[i] = place(active()[batch[i < count ? i : 0]], i, lanes);
-    }
-    WitnessLanes found;
-    memory_.kernels->witnesses(memory_.search->kernel, found);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const Active& item = active()[batch[i]];
-      if ((found.crossing >> i & 1u) != 0) {
-        report_crossing(item);
-        continue;
-      }
-      const Vec3d on_a = origin[i] + lane(found.on_a, i);
-      report_apart(item, on_a, lane(found.apart, i));
-    }
-  }
-
-  static Vec3d lane(const float (&rows)[3][kBatch], std::uint32_t i) noexcept {
-    return {static_cast<double>(rows[0][i]), static_cast<double>(rows[1][i]),
-            static_cast<double>(rows[2][i])};
-  }
-
-  /// The witness's triangles in the coordinates of a, relative to a corner that is returned: in
-  /// double up to there, so that only the size of the pair is rounded.
-  Vec3d place(const Active& item, std::uint32_t i, TriangleLanes& lanes) noexcept {
-    const PairState& pair = pair_of(item);
-    const Witness& witness = state_of(item).witness;
-    const RegionTriangle& a = pair.image_a->region_triangles[witness.a];
-    const RegionTriangle& b = pair.image_b->region_triangles[witness.b];
-    const Vec3d origin = corner(a, 0, pair.scale_a);
-    for (std::uint32_t c = 0; c < 3; ++c) {
-      put(corner(a, c, pair.scale_a) - origin, c, i, lanes.a);
-      const Vec3d of_b = pair.b_in_a.rotation * corner(b, c, pair.scale_b);
-      put(of_b + pair.b_in_a.translation - origin, c, i, lanes.b);
-    }
-    return origin;
-  }
-
-  static void put(Vec3d p, std::uint32_t corner, std::uint32_t i,
-                  float (&rows)[9][kBatch]) noexcept {
-    rows[3 * corner][i] = static_cast<float>(p.x);
-    rows[3 * corner + 1][i] = static_cast<float>(p.y);
-    rows[3 * corner + 2][i] = static_cast<float>(p.z);
-  }
-
-  void report_apart(const Active& item, Vec3d on_a, Vec3d apart) noexcept {
-    const PairState& pair = pair_of(item);
-    const Witness& witness = state_of(item).witness;
-    const double distance = norm(apart);
-    constexpr double kTouching = 1e-9;  // a direction of so short a vector is rounding
-    const Vec3d normal = distance > kTouching ? (1 / distance) * apart : facing(pair, witness);
-    add(item,
-        {on_a, on_a - apart, normal, distance, pair.image_a->region_triangles[witness.a].piece,
-         pair.image_b->region_triangles[witness.b].piece});
-  }
-
-  /// Where two triangles touch: the outward normal of b's.
-  static Vec3d facing(const PairState& pair, const Witness& witness) noexcept {
-    const RegionTriangle& t = pair.image_b->region_triangles[witness.b];
-    const Vec3d p = corner(t, 0, 1);
-    const Vec3d n = pair.b_in_a.rotation * cross(corner(t, 1, 1) - p, corner(t, 2, 1) - p);
-    const double length = norm(n);
-    return length > 0 ? (1 / length) * n : Vec3d{1, 0, 0};
-  }
-
-  void report_crossing(const Active& item) noexcept {
-    const PairState& pair = pair_of(item);
-    const PairFrame& frame = frame_of_item(item);
-    const Witness& witness = state_of(item).witness;
-    CrossingScratch& scratch = *memory_.crossing;
-    scratch.list.count = 0;
-    find_crossings(*memory_.kernels, frame, *memory_.search, pace_, item.region, scratch.list);
-    // Only where the budget or rounding kept the search from finding any: the list shall not depend
-    // on how the witness came about.
-    if (scratch.list.count == 0) note_crossing(frame, witness.a, witness.b, scratch.list);
-    if (scratch.list.count == kMaxCrossings) result_.iteration_cap_met = true;
-    const Crossing c = deepest(pair, scratch);
-    if (!c.exact) result_.iteration_cap_met = true;
-    add(item, {c.point_a, c.point_b, c.normal, -c.depth, c.piece_a, c.piece_b});
-  }
-
-  /// In the coordinates of a, lengths in units.
-  struct Found {
-    Vec3d point_a;
-    Vec3d point_b;
-    Vec3d normal;
-    double distance;
-    std::uint32_t piece_a;
-    std::uint32_t piece_b;
-  };
-
-  void add(const Active& item, const Found& found) noexcept {
-    const PairState& pair = pair_of(item);
-    if (result_.contacts == memory_.contacts.size()) {
-      result_.truncated_by_memory = true;
-      return;
-    }
-    Contact& out = memory_.contacts[result_.contacts++];
-    out.point_a_m = pair.centre_a_m + pair.rotation_a * (pair.unit_m * found.point_a);
-    out.point_b_m = pair.centre_a_m + pair.rotation_a * (pair.unit_m * found.point_b);
-    out.normal = pair.rotation_a * found.normal;
-    out.distance_m = found.distance * pair.unit_m;
-    out.weight = 0;
-    out.pair = item.pair;
-    out.piece_a = found.piece_a;
-    out.level_a = 0;
-    out.piece_b = found.piece_b;
-    out.level_b = 0;
-    if (out.distance_m < result_.min_distance_m) result_.min_distance_m = out.distance_m;
-  }
-
   QueryMemory& memory_;
   Demand demand_;
   Meter& meter_;
   Pace pace_;
   std::uint32_t count_ = 0;  // of active regions
+  std::uint32_t pending_ = 0;
+  std::uint32_t pending_of_[kBatch];  // which active region a pair to be measured belongs to
   bool truncated_ = false;
   QueryResult result_;
 };

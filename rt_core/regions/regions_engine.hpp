@@ -13,29 +13,24 @@
 #include "rt_core/convex/penetration.hpp"
 #include "rt_core/levels/body_pair.hpp"
 #include "rt_core/palpate_rt.hpp"
+#include "rt_core/regions/containment.hpp"
 #include "rt_core/regions/crossing.hpp"
 #include "rt_core/regions/kernels.hpp"
+#include "rt_core/regions/region_state.hpp"
 #include "rt_core/regions/search.hpp"
 #include "rt_core/regions/sweep.hpp"
 
 namespace palpate::regions {
 
-/// What is kept of a region from tick to tick: a witness and a bound. Lengths in units of the pair.
-struct RegionState {
-  float lower = 0;       ///< proved lower bound of its distance from b, when the odometers of the
-  double travel_at = 0;  ///< ... pair stood here
-  double turn_at = 0;
-  Witness witness;  ///< its distance is of the last tick in which the region was near
-  std::uint32_t seed = image::kNone;  ///< where to look for a witness: a child of b's tree
-};
-
 /// A region that may be nearer than delta in this tick.
 struct Active {
-  float lower = 0;  ///< at the present poses
-  float width = 0;  ///< min(witness, delta) - lower: what its force may still change by
+  float rest = 0;   ///< at the present poses
+  float moved = 0;  ///< since the proof, at most
+  float width = 0;  ///< min(witness, delta) - rest: what its force may still change by
   std::uint32_t state = 0;
   std::uint32_t region = 0;
   std::uint32_t pair = 0;
+  bool climbed = false;  ///< the witness has been moved to the nearest of its neighbours
 };
 
 /// Memory of the query, borrowed from the engine.
@@ -43,6 +38,7 @@ struct QueryMemory {
   const Kernels* kernels = nullptr;
   std::span<levels::PairState> pairs;
   std::span<PairFrame> frames;           ///< [pairs]
+  std::span<Containment> containment;    ///< [pairs]
   std::span<std::uint32_t> first_state;  ///< [pairs], into states
   std::span<RegionState> states;         ///< [sum over pairs of the regions of a]
   std::span<Active> active;              ///< [states]
@@ -80,11 +76,13 @@ struct Demand {
 /// and deltas are set.
 ///
 /// Regions whose lower bound, less the motion since it was proved, is delta or more cost nothing.
-/// The witnesses of the others are measured at the present poses, moved to nearer neighbours, and
-/// bound the distances from above; then the regions are searched (search.hpp), under a budget the
-/// widest interval first and closed in steps. Whatever ends it, every interval holds its distance,
-/// and every witness nearer than delta is a contact. Where triangles cross, the pieces that they
-/// belong to give depth and direction (crossing.hpp).
+/// The witnesses of the others, and those of the pairs kept of them that may be nearer, are
+/// measured at the present poses and bound the distances from above. That is exact for as long as
+/// no other pair can have come as near; then the region is searched again (search.hpp), under a
+/// budget the widest interval first and closed in steps, after a cheap look at the witness's
+/// neighbours. Whatever ends it, every interval holds its distance, and every witness nearer than
+/// delta is a contact. Where triangles cross, the pieces that they belong to give depth and
+/// direction (crossing.hpp).
 ///
 /// A contact's pieces are those of level 0 that hold the witnesses. Cost: the budget, plus
 /// O(regions), plus one witness of each near region.

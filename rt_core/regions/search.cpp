@@ -34,15 +34,12 @@ std::uint32_t evaluate(const Kernels& kernels, const PairFrame& frame, SearchScr
 class Search {
  public:
   Search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-         const Witness& witness, float limit, float tolerance) noexcept
-      : kernels_(kernels),
-        frame_(frame),
-        scratch_(scratch),
-        pace_(pace),
-        limit_(limit),
-        tolerance_(tolerance) {
-    out_.best = witness;
+         const Witness& witness, const Reach& reach) noexcept
+      : kernels_(kernels), frame_(frame), scratch_(scratch), pace_(pace), reach_(reach) {
+    out_.best = given_ = witness;
     best_squared_ = witness.known() ? witness.distance * witness.distance : kFar;
+    scratch_.near.count = 0;
+    if (witness.known()) scratch_.near.add(witness, 0);
     lower_threshold();
   }
 
@@ -61,7 +58,12 @@ class Search {
   /// Keeps the nearest child only, from a pair on: finds a witness, and no bound.
   Witness dive(const image::Region& region, std::uint32_t seed) noexcept {
     greedy_ = true;
-    push({child_name(region.parent, region.slot), seed, 0});
+    const std::uint32_t top = child_name(region.parent, region.slot);
+    if (seed == image::kNone) {
+      visit_root(top);
+    } else {
+      push({top, seed, 0});
+    }
     return finish().best;
   }
 
@@ -76,7 +78,7 @@ class Search {
       const Candidate top = scratch_.stack[--size_];
       if (top.squared < threshold_squared_) descend(top);
     }
-    out_.lower = proved(passed_over());
+    out_.rest = proved(passed_over());
     return out_;
   }
 
@@ -116,7 +118,7 @@ class Search {
     const std::uint32_t children = children_of(node);
     const std::uint32_t near =
         children & kernels_.test_boxes(box, to_node, node, threshold_squared_ / scale2, squared_);
-    if (best_squared_ >= limit_ * limit_) note_passed_over(children & ~near, scale2);
+    if (best_squared_ >= threshold_squared_) note_passed_over(children & ~near, scale2);
     return near;
   }
 
@@ -209,14 +211,28 @@ class Search {
       pending_ = 0;
       return;
     }
-    std::uint32_t nearest = 0;
-    for (std::uint32_t i = 1; i < pending_; ++i)
-      nearest = squared[i] < squared[nearest] ? i : nearest;
+    keep_nearest(squared);
     pending_ = 0;
-    if (squared[nearest] >= best_squared_) return;
-    best_squared_ = squared[nearest];
-    out_.best = {scratch_.batch_a[nearest], scratch_.batch_b[nearest], sqrt_of(best_squared_)};
-    lower_threshold();
+  }
+
+  void keep_nearest(const float (&squared)[kBatch]) noexcept {
+    for (std::uint32_t i = 0; i < pending_; ++i) {
+      if (squared[i] < best_squared_) {
+        best_squared_ = squared[i];
+        out_.best = {scratch_.batch_a[i], scratch_.batch_b[i], sqrt_of(squared[i])};
+        lower_threshold();
+      }
+    }
+    for (std::uint32_t i = 0; i < pending_; ++i) {
+      if (squared[i] >= threshold_squared_) continue;
+      const Witness pair{scratch_.batch_a[i], scratch_.batch_b[i], sqrt_of(squared[i])};
+      if (pair.same_pair(given_)) continue;
+      const float dropped = scratch_.near.add(pair, most_);
+      if (dropped < most_) {
+        most_ = dropped;
+        lower_threshold();
+      }
+    }
   }
 
   void note_crossings(std::uint32_t crossing) noexcept {
@@ -229,15 +245,16 @@ class Search {
 
   void lower_threshold() noexcept {
     const float best =
-        out_.best.known() && out_.best.distance < limit_ ? out_.best.distance : limit_;
-    const float threshold = best - tolerance_;
-    threshold_ = threshold > 0 ? threshold : 0;
+        out_.best.known() && out_.best.distance < reach_.limit ? out_.best.distance : reach_.limit;
+    const float wanted = best + reach_.margin;
+    threshold_ = wanted < most_ ? wanted : most_;
+    threshold_ = threshold_ > 0 ? threshold_ : 0;
     threshold_squared_ = threshold_ * threshold_;
   }
 
   /// Everything that was passed over is at least this far.
   float passed_over() const noexcept {
-    if (best_squared_ < limit_ * limit_) return threshold_;
+    if (best_squared_ < threshold_squared_) return threshold_;
     const float passed = sqrt_of(passed_squared_);
     return passed < out_.best.distance || !out_.best.known() ? passed : out_.best.distance;
   }
@@ -252,7 +269,7 @@ class Search {
     for (std::uint32_t i = 0; i < pending_; ++i) {
       least = scratch_.batch_squared[i] < least ? scratch_.batch_squared[i] : least;
     }
-    out_.lower = proved(sqrt_of(least));
+    out_.rest = proved(sqrt_of(least));
     out_.complete = false;
     return out_;
   }
@@ -261,8 +278,9 @@ class Search {
   const PairFrame& frame_;
   SearchScratch& scratch_;
   Pace& pace_;
-  float limit_;
-  float tolerance_;
+  Reach reach_;
+  Witness given_;
+  float most_ = kFarthest;  // pairs from here on have been dropped
   Bounds out_;
   float best_squared_ = kFar;
   float threshold_ = 0;
@@ -298,17 +316,15 @@ void around_b(const ImageView& image, std::uint32_t t, std::uint32_t (&out)[4]) 
 }  // namespace
 
 void measure(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-             Witness* const (&witnesses)[kBatch], std::uint32_t count) noexcept {
+             std::uint32_t count, float (&out_distances)[kBatch]) noexcept {
   PALPATE_ASSERT(count > 0 && count <= kBatch);
-  for (std::uint32_t i = 0; i < kBatch; ++i) {
-    const Witness& w = *witnesses[i < count ? i : 0];
-    scratch.batch_a[i] = w.a;
-    scratch.batch_b[i] = w.b;
+  for (std::uint32_t i = count; i < kBatch; ++i) {
+    scratch.batch_a[i] = scratch.batch_a[0];
+    scratch.batch_b[i] = scratch.batch_b[0];
   }
   pace.charge(kBatchUnits);
-  float squared[kBatch];
-  evaluate(kernels, frame, scratch, squared);
-  for (std::uint32_t i = 0; i < count; ++i) witnesses[i]->distance = sqrt_of(squared[i]);
+  evaluate(kernels, frame, scratch, out_distances);
+  for (float& d : out_distances) d = sqrt_of(d);
 }
 
 void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
@@ -334,9 +350,8 @@ void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratc
 }
 
 Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-              std::uint32_t region, const Witness& witness, float limit, float tolerance) noexcept {
-  return Search(kernels, frame, scratch, pace, witness, limit, tolerance)
-      .run(frame.a->regions[region]);
+              std::uint32_t region, const Witness& witness, const Reach& reach) noexcept {
+  return Search(kernels, frame, scratch, pace, witness, reach).run(frame.a->regions[region]);
 }
 
 void note_crossing(const PairFrame& frame, std::uint32_t triangle_a, std::uint32_t triangle_b,
@@ -353,12 +368,12 @@ void note_crossing(const PairFrame& frame, std::uint32_t triangle_a, std::uint32
 
 void find_crossings(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
                     Pace& pace, std::uint32_t region, CrossingList& list) noexcept {
-  Search(kernels, frame, scratch, pace, {}, kRounding, 0).collect(frame.a->regions[region], list);
+  Search(kernels, frame, scratch, pace, {}, {kRounding, 0}).collect(frame.a->regions[region], list);
 }
 
 Witness dive(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
              std::uint32_t region, std::uint32_t seed) noexcept {
-  return Search(kernels, frame, scratch, pace, {}, kFarthest, 0)
+  return Search(kernels, frame, scratch, pace, {}, {kFarthest, 0})
       .dive(frame.a->regions[region], seed);
 }
 

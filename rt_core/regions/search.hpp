@@ -6,6 +6,7 @@
 
 #include "rt_core/base/meter.hpp"
 #include "rt_core/regions/kernels.hpp"
+#include "rt_core/regions/near_pairs.hpp"
 #include "rt_core/regions/pair_frame.hpp"
 
 namespace palpate::regions {
@@ -15,18 +16,10 @@ inline constexpr std::uint64_t kBatchUnits = 8;
 /// The clock is read after this many units.
 inline constexpr std::uint64_t kUnitsPerReading = 32;
 
-/// A pair of triangles and its distance.
-struct Witness {
-  std::uint32_t a = image::kNone;  ///< into a's region_triangles
-  std::uint32_t b = image::kNone;
-  float distance = 0;  ///< in units; meaningless without triangles
-  [[nodiscard]] bool known() const noexcept { return a != image::kNone; }
-};
-
-/// Bounds of a region's distance. `best` is an upper bound where known.
+/// What a search knows of a region. `best` is an upper bound where known.
 struct Bounds {
   Witness best;
-  float lower = 0;       ///< proved, rounding subtracted; >= 0
+  float rest = 0;        ///< proved for all pairs but those kept, rounding subtracted; >= 0
   bool complete = true;  ///< false: the budget ended the search
 };
 
@@ -45,6 +38,7 @@ inline constexpr std::uint32_t kMaxCandidates =
 /// Working memory of one search at a time; needs no initialisation.
 struct SearchScratch {
   KernelScratch kernel;
+  NearPairs near;  ///< of the last search()
   Candidate stack[kMaxCandidates];
   std::uint32_t batch_a[kBatch];
   std::uint32_t batch_b[kBatch];
@@ -77,29 +71,36 @@ class Pace {
   bool time_ended_ = false;
 };
 
-/// Distances of witnesses at the present poses, sixteen at a time.
-/// @param witnesses  [count], count <= kBatch, all known; distances are set
+/// Distances at the present poses of the pairs in scratch.batch_a and batch_b, sixteen at a time.
+/// @param count  1 to kBatch
 void measure(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-             Witness* const (&witnesses)[kBatch], std::uint32_t count) noexcept;
+             std::uint32_t count, float (&out_distances)[kBatch]) noexcept;
 
 /// Goes from a witness to a neighbour of either triangle, or of both, while that is nearer; within
 /// the witness's region of a. At most kMaxClimb batches.
-inline constexpr std::uint32_t kMaxClimb = 8;
+inline constexpr std::uint32_t kMaxClimb = 3;
 void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
            Witness& witness) noexcept;
 
+/// How far a search looks.
+struct Reach {
+  float limit = 0;  ///< distances from here on are of no interest
+  float margin =
+      0;  ///< pairs farther than the nearest by less are kept; < 0: so much may be missed
+};
+
 /// Depth-first search of both trees, nearest child first: what is not nearer than
-/// min(best, limit) - tolerance is passed over.
+/// min(best, limit) + margin is passed over, and the pairs that are nearer are kept in
+/// scratch.near.
 ///
-/// @param region     of a
-/// @param witness    the best known; its distance at the present poses
-/// @param limit      distances from here on are of no interest
-/// @param tolerance  by how much the lower bound may stay below the least distance
-/// Complete: the true least distance d has lower <= d, lower >= min(best, limit) - tolerance -
-/// kRounding, and d <= best. Interrupted: lower and best still hold.
+/// @param region   of a
+/// @param witness  the best known; its distance at the present poses
+/// Every pair of the region is kept, or at least `rest` apart. Complete: rest >= min(best, limit)
+/// + margin - kRounding, or the kept pairs are all that there is room for, and rest is no less than
+/// their distances, less kRounding. Interrupted: rest and best still hold.
 /// Cost: the budget, or all pairs of boxes nearer than the answer. No allocation, no recursion.
 Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-              std::uint32_t region, const Witness& witness, float limit, float tolerance) noexcept;
+              std::uint32_t region, const Witness& witness, const Reach& reach) noexcept;
 
 /// Pairs of pieces (level 0) whose triangles cross, each once; more than fit are left out.
 inline constexpr std::uint32_t kMaxCrossings = 16;
@@ -117,7 +118,7 @@ void find_crossings(const Kernels& kernels, const PairFrame& frame, SearchScratc
                     Pace& pace, std::uint32_t region, CrossingList& list) noexcept;
 
 /// A witness of a region by going to the nearest child of both trees, one path only.
-/// @param seed  a child of b to start from
+/// @param seed  a child of b to start from; kNone: the root
 /// Unknown where the budget ended it. Cost: kMaxRegionDepth boxes of each tree and two batches.
 Witness dive(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
              std::uint32_t region, std::uint32_t seed) noexcept;

@@ -16,7 +16,7 @@ struct Swept {
 };
 
 /// Descends both trees together down to the regions, so that what is far is told once for many
-/// regions; parts of b are divided until they are no larger than the region. The bounds hold
+/// regions; parts of b are divided until they are no larger than twice the region. The bounds hold
 /// wherever the budget ends it.
 /// @param limit  bounds from here on are not refined
 /// @param out    [regions of a]

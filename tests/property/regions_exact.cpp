@@ -3,6 +3,7 @@
 // that hold wherever a search ends, overlap that begins at zero.
 #include <gtest/gtest.h>
 
+#include "rt_core/regions/region_state.hpp"
 #include "rt_core/regions/sweep.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/placements.hpp"
@@ -124,28 +125,100 @@ std::vector<double> truth_in_units(const Pose& pose, double unit_m) {
 const Pose kNear{{1.72, 0.2, 0.3}, turn({0.3, 0.2, -0.4})};
 constexpr double kRounding = 2e-7;  // of the distances of single triangles
 
+void expect_kept_or_beyond_rest(const regions::Bounds& found, const regions::NearPairs& near,
+                                double d) {
+  if (near.count > 0) {
+    ASSERT_LE(std::min(double(found.rest), double(near.pairs[0].distance) - kRounding), d);
+  } else {
+    ASSERT_LE(double(found.rest), d);
+  }
+  for (std::uint32_t i = 1; i < near.count; ++i) {
+    ASSERT_LE(near.pairs[i - 1].distance, near.pairs[i].distance);
+  }
+}
+
 TEST(RegionSearch, bounds_hold_wherever_the_budget_ends_it) {
   SearchedPair at(kNear);
   const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
   for (std::uint32_t region = 0; region < truth.size(); region += 3) {
     const double d = truth[region];
-    for (const float tolerance : {0.0f, 0.01f}) {
+    for (const float margin : {0.0f, -0.01f, 0.01f}) {
       for (const std::uint64_t units : {0u, 1u, 3u, 9u, 20u, 50u, 100000u}) {
         Meter meter({.units = units}, 0);
         regions::Pace pace(meter);
         const regions::Bounds found = regions::search(
-            regions::best_kernels(), at.frame, *at.scratch, pace, region, {}, 0.5f, tolerance);
-        ASSERT_LE(double(found.lower), d) << region << " " << units;
+            regions::best_kernels(), at.frame, *at.scratch, pace, region, {}, {0.5f, margin});
+        expect_kept_or_beyond_rest(found, at.scratch->near, d);
         if (found.best.known()) {
           ASSERT_GE(double(found.best.distance), d - kRounding);
         }
         if (!found.complete || d > 0.5) continue;
         ASSERT_TRUE(found.best.known());
-        ASSERT_GE(double(found.lower), d - double(tolerance) - 2 * double(regions::kRounding));
-        if (tolerance == 0) {
+        ASSERT_GE(double(found.rest),
+                  d + std::min(0.0, double(margin)) - 2 * double(regions::kRounding))
+            << region << " " << units;
+        if (margin >= 0) {
           ASSERT_NEAR(double(found.best.distance), d, kRounding);
         }
       }
+    }
+  }
+}
+
+TEST(RegionSearch, pairs_that_are_not_kept_are_beyond_rest) {
+  SearchedPair at(kNear);
+  const PlacedTriangles moved(bodies().a.mesh, kNear);
+  const PlacedTriangles fixed(bodies().b.mesh, {});
+  const auto& triangles = bodies().a.view.region_triangles;
+  const auto& others = bodies().b.view.region_triangles;
+  for (const std::uint32_t region : {2u, 7u, 11u}) {
+    Meter meter({}, 0);
+    regions::Pace pace(meter);
+    const regions::Bounds found = regions::search(regions::best_kernels(), at.frame, *at.scratch,
+                                                  pace, region, {}, {2.0f, 0.02f});
+    const regions::NearPairs& near = at.scratch->near;
+    for (std::uint32_t a = 0; a < triangles.size(); ++a) {
+      if (triangles[a].region != region) continue;
+      for (std::uint32_t b = 0; b < others.size(); ++b) {
+        const auto end = near.pairs + near.count;
+        const regions::Witness pair{a, b, 0};
+        if (std::any_of(near.pairs, end, [&](const auto& w) { return w.same_pair(pair); })) {
+          continue;
+        }
+        const double d = std::sqrt(CGAL::squared_distance(moved.triangles[triangles[a].source],
+                                                          fixed.triangles[others[b].source]));
+        ASSERT_GE(d / at.pair.unit_m, double(found.rest));
+      }
+    }
+  }
+}
+
+TEST(RegionState, no_point_moves_farther_than_is_said) {
+  std::mt19937 rng(5);
+  for (std::uint32_t round = 0; round < 20; ++round) {
+    SearchedPair at(kNear);
+    regions::RegionState state;
+    const std::uint32_t region = round % 7;
+    regions::prove(state, at.pair, region, 1);
+    std::vector<Vec3d> before;
+    const auto place = [&](const image::RegionTriangle& t) {
+      const Vec3d p{double(t.corners[0]), double(t.corners[1]), double(t.corners[2])};
+      return transpose(at.pair.b_in_a.rotation) *
+             (at.pair.scale_a * p - at.pair.b_in_a.translation);
+    };
+    for (const auto& t : bodies().a.view.region_triangles) before.push_back(place(t));
+    Pose pose = kNear;
+    for (int step = 0; step < 5; ++step) {
+      pose.position_m += 0.05 * random_unit(rng);
+      pose.orientation = turn(0.3 * random_unit(rng));
+      levels::move(at.pair, pose, {});
+    }
+    const double most = regions::moved_since(state, at.pair, region);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const auto& t = bodies().a.view.region_triangles[i];
+      if (t.region != region) continue;
+      ASSERT_LE(norm(place(t) - before[i]), most);
+      ASSERT_LE(norm(place(t) - before[i]), regions::way_since(state, at.pair));
     }
   }
 }

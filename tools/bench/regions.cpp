@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Time and accuracy of the region engine on scenes of two detailed objects.
 //
-//   bench_regions [TICKS [SCENE...]]     scenes: jaws, golf, socket, screw, joint; default: all
+//   bench_regions [TICKS [SCENE[:DELTA]...]]     scenes: jaws, tips, golf, socket, screw, joint;
+//                                                default: all, with 0.01, 0.02 and 0.05
 //
-// A row (CSV) for each scene, contact tolerance (1, 2, 5 % of the radius) and mode: exact with all
+// A row (CSV) for each scene, contact tolerance (relative to the radius) and mode: exact with all
 // state kept (warm) or forgotten at each tick (cold), and under budgets of time. Times are of the
-// thread's own processor clock, so that a busy machine shows in the caches only. force_nrmse is
-// against the exact ticks, of their largest force, over all ticks but the first ten;
-// bound_of_force is the median of the certified error over that force; force_step is the largest
-// change of force from tick to tick.
+// thread's own processor clock, so that a busy machine shows in the caches only; units are those of
+// the engine (TickResult::queries). force_nrmse is against the exact ticks, of their largest force,
+// over all ticks but the first ten; bound_of_force is the median of the certified error over that
+// force; force_step is the largest change of force from tick to tick. Where FCL is installed, its
+// distance of the same meshes (one least distance, OBBRSS) is asked between the exact ticks, pose
+// by pose; of_fcl is our time by its time, summed over the run.
 #include <time.h>
 
 #include <algorithm>
@@ -16,43 +19,33 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "rt_core/palpate_rt.hpp"
+#include "host_bake/models/models.hpp"
 #include "tools/bench/scenes.hpp"
+#if defined(PALPATE_BENCH_FCL)
+#include "tools/bench/mesh_fcl.hpp"
+#endif
 
-namespace palpate {
+namespace palpate::bench {
 namespace {
 
 constexpr int kSettled = 10;  // ticks after which a budgeted run counts
+
+constexpr SceneName kScenes[] = {{"jaws", "jaw_lower", "jaw_upper", true},
+                                 {"tips", "jaw_lower", "jaw_lower", false, true},
+                                 {"golf", "golf_ball", "golf_ball", false},
+                                 {"socket", "golf_ball", "golf_shell", true},
+                                 {"screw", "screw", "nut", true},
+                                 {"joint", "ball_joint_head", "ball_joint_cup", true}};
 
 std::uint64_t processor_ns(void* = nullptr) {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<std::uint64_t>(t.tv_sec) * 1'000'000'000 +
          static_cast<std::uint64_t>(t.tv_nsec);
-}
-
-using bench::Bench;
-using bench::Body;
-using bench::mean;
-using bench::SceneName;
-
-constexpr SceneName kScenes[] = {{"jaws", "jaw_lower", "jaw_upper", true},
-                                 {"golf", "golf_ball", "golf_ball", false},
-                                 {"socket", "golf_ball", "golf_shell", true},
-                                 {"screw", "screw", "nut", true},
-                                 {"joint", "ball_joint_head", "ball_joint_cup", true}};
-
-/// Of all regions: what clusters make of them is the force stage's affair, and neighbours whose
-/// nearest point is a common one join a cluster or not by the last bit.
-Vec3d summed_force(const Settings& settings, const TickResult& r) {
-  Vec3d sum{};
-  for (const Contact& c : r.contacts) {
-    sum += (settings.stiffness_N_per_m * (settings.delta_m - c.distance_m)) * c.normal;
-  }
-  return sum;
 }
 
 Budget within(double budget_us) {
@@ -64,81 +57,140 @@ Budget within(double budget_us) {
   return budget;
 }
 
+/// Of all regions: what clusters make of them is the force stage's affair, and neighbours whose
+/// nearest point is a common one join a cluster or not by the last bit.
+Vec3d summed_force(const Settings& settings, const TickResult& r) {
+  Vec3d sum{};
+  for (const Contact& c : r.contacts) {
+    sum += (settings.stiffness_N_per_m * (settings.delta_m - c.distance_m)) * c.normal;
+  }
+  return sum;
+}
+
 double percentile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
 struct Run {
-  std::vector<double> us, contacts, near, bound_N;
+  std::vector<double> us, contacts, near, units, bound_N;
   std::vector<Vec3d> force_N;
+  double fcl_us = 0;  ///< mean; 0: not asked
 };
 
-Run run(Bench& bench, const std::vector<Pose>& poses, bool cold, double budget_us) {
+/// What is asked between two ticks.
+#if defined(PALPATE_BENCH_FCL)
+using Peer = FclPair;
+double peer_us(const Peer& peer, const Pose& pose) {
+  const std::uint64_t start = processor_ns();
+  const double distance = peer.distance(pose, {});
+  const double us = static_cast<double>(processor_ns() - start) * 1e-3;
+  return distance >= 0 ? us : 0;
+}
+#else
+struct Peer {
+  Peer(const bake::Mesh&, const bake::Mesh&) {}
+};
+double peer_us(const Peer&, const Pose&) { return 0; }
+#endif
+
+struct Plan {
+  bool cold = false;
+  double budget_us = 0;
+  const Peer* peer = nullptr;
+};
+
+Run run(Bench& bench, const std::vector<Pose>& poses, const Plan& plan) {
   Run out;
   bench.forget();
   for (const Pose& pose : poses) {
-    if (cold) bench.forget();
+    if (plan.cold) bench.forget();
     const std::uint64_t start = processor_ns();
-    const TickResult r = bench.tick_at(pose, within(budget_us));
+    const TickResult r = bench.tick_at(pose, within(plan.budget_us));
     out.us.push_back(static_cast<double>(processor_ns() - start) * 1e-3);
     out.contacts.push_back(static_cast<double>(r.contacts.size()));
     out.near.push_back(static_cast<double>(r.front_nodes));
+    out.units.push_back(static_cast<double>(r.queries));
     out.bound_N.push_back(r.certificate.force_bound_N);
     out.force_N.push_back(summed_force(bench.settings(), r));
+    if (plan.peer != nullptr) {
+      out.fcl_us += peer_us(*plan.peer, pose) / static_cast<double>(poses.size());
+    }
   }
   return out;
 }
 
-void print_row(const char* scene, double delta_rel, const char* mode, double budget_us,
-               const Run& r, const Run& exact) {
+void print_row(const char* scene, double delta_rel, const Plan& plan, const Run& r,
+               const Run& exact) {
   double peak = 0;
   double step = 0;
   for (std::size_t i = 0; i < exact.force_N.size(); ++i) {
     peak = std::max(peak, norm(exact.force_N[i]));
     if (i > 0) step = std::max(step, norm(exact.force_N[i] - exact.force_N[i - 1]));
   }
-  std::printf("%s,%g,%s,%g,%.1f,%.1f,%.1f,%.1f,%.1f,%.4f,%.4f,%.4f\n", scene, delta_rel, mode,
-              budget_us, mean(r.us), percentile(r.us, 0.5), percentile(r.us, 0.99), mean(r.near),
-              mean(r.contacts), bench::nrmse(r.force_N, exact.force_N, kSettled),
-              percentile(r.bound_N, 0.5) / peak, step / peak);
+  std::printf("%s,%g,%s,%g,%.1f,%.1f,%.1f,%.0f,%.1f,%.1f,%.4f,%.4f,%.4f", scene, delta_rel,
+              plan.cold ? "cold" : "warm", plan.budget_us, mean(r.us), percentile(r.us, 0.5),
+              percentile(r.us, 0.99), mean(r.units), mean(r.near), mean(r.contacts),
+              nrmse(r.force_N, exact.force_N, kSettled), percentile(r.bound_N, 0.5) / peak,
+              step / peak);
+  if (r.fcl_us > 0) {
+    std::printf(",%.1f,%.3f\n", r.fcl_us, mean(r.us) / r.fcl_us);
+  } else {
+    std::printf(",,\n");
+  }
   std::fflush(stdout);
 }
 
 void measure(const SceneName& scene, double delta_rel, int ticks) {
   const Body a(scene.a, delta_rel, bake::ForEngine::regions);
   const Body b(scene.b, delta_rel, bake::ForEngine::regions);
-  const double radius = std::min(a.view.header->radius_m, b.view.header->radius_m);
-  const double delta = delta_rel * radius;
-  const std::vector<Pose> poses = bench::motion(scene, a, b, delta, ticks);
+  const double delta = delta_rel * std::min(a.view.header->radius_m, b.view.header->radius_m);
+  const std::vector<Pose> poses = motion(scene, a, b, delta, ticks);
+  const Peer peer(bake::make_model(scene.a), bake::make_model(scene.b));
   Bench bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
-  const Run exact = run(bench, poses, false, 0);
-  print_row(scene.name, delta_rel, "warm", 0, exact, exact);
-  print_row(scene.name, delta_rel, "cold", 0, run(bench, poses, true, 0), exact);
+  const Run exact = run(bench, poses, {.peer = &peer});
+  print_row(scene.name, delta_rel, {}, exact, exact);
+  std::vector<Plan> plans{{.cold = true}};
   for (const double budget_us : {50.0, 100.0, 250.0, 500.0}) {
-    print_row(scene.name, delta_rel, "warm", budget_us, run(bench, poses, false, budget_us), exact);
-    print_row(scene.name, delta_rel, "cold", budget_us, run(bench, poses, true, budget_us), exact);
+    plans.push_back({.budget_us = budget_us});
+    plans.push_back({.cold = true, .budget_us = budget_us});
+  }
+  for (const Plan& plan : plans) {
+    print_row(scene.name, delta_rel, plan, run(bench, poses, plan), exact);
   }
 }
 
-bool wanted(const SceneName& scene, int argc, char** argv) {
-  for (int i = 2; i < argc; ++i) {
-    if (std::strcmp(argv[i], scene.name) == 0) return true;
+/// The tolerance that an argument asks for: 0 for all, nothing where it names another scene.
+std::optional<double> asked(const SceneName& scene, const char* argument) {
+  const std::size_t length = std::strlen(scene.name);
+  if (std::strncmp(argument, scene.name, length) != 0) return std::nullopt;
+  if (argument[length] == '\0') return 0.0;
+  if (argument[length] != ':') return std::nullopt;
+  return std::atof(argument + length + 1);
+}
+
+void measure_asked(const SceneName& scene, double delta_rel, int ticks) {
+  if (delta_rel > 0) {
+    measure(scene, delta_rel, ticks);
+    return;
   }
-  return argc <= 2;
+  for (const double each : {0.01, 0.02, 0.05}) measure(scene, each, ticks);
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::bench
 
 int main(int argc, char** argv) {
+  using namespace palpate::bench;
   const int ticks = argc > 1 ? std::max(20, std::atoi(argv[1])) : 300;
   std::printf(
-      "scene,delta_rel,mode,budget_us,mean_us,median_us,p99_us,near_regions,contacts,force_nrmse,"
-      "bound_of_force,force_step\n");
-  for (const palpate::SceneName& scene : palpate::kScenes) {
-    if (!palpate::wanted(scene, argc, argv)) continue;
-    for (const double delta_rel : {0.01, 0.02, 0.05}) palpate::measure(scene, delta_rel, ticks);
+      "scene,delta_rel,mode,budget_us,mean_us,median_us,p99_us,units,near_regions,contacts,"
+      "force_nrmse,bound_of_force,force_step,fcl_us,of_fcl\n");
+  for (const SceneName& scene : kScenes) {
+    if (argc <= 2) measure_asked(scene, 0, ticks);
+    for (int i = 2; i < argc; ++i) {
+      if (const auto delta_rel = asked(scene, argv[i])) measure_asked(scene, *delta_rel, ticks);
+    }
   }
   return 0;
 }

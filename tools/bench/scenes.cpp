@@ -29,7 +29,16 @@ double distance_at(Bench& wide, const Pose& pose, double most) {
   return r.contacts.empty() ? most : r.min_distance_m;
 }
 
-/// Slides over the other body at a distance of about 0.4 delta.
+/// Moves against `out` until 0.4 delta is left.
+Pose brought_near(Bench& wide, Pose pose, Vec3d out, double delta, double reach) {
+  for (int k = 0; k < 60; ++k) {
+    const double step = distance_at(wide, pose, reach) - 0.4 * delta;
+    pose.position_m -= step * out;
+    if (std::abs(step) < 1e-3 * delta) break;
+  }
+  return pose;
+}
+
 Pose sliding(Bench& wide, const Body& a, const Body& b, double delta, double reach, int i) {
   const double u = 0.0035 * i;
   const double height = std::sin(0.3 * u);
@@ -37,12 +46,18 @@ Pose sliding(Bench& wide, const Body& a, const Body& b, double delta, double rea
   Pose pose{{}, turned(0.3 * std::sin(0.5 * u), 0.5 * u, 0.2 * u)};
   const double apart = a.view.header->radius_m + b.view.header->radius_m;
   pose.position_m = centre_of(b) + apart * out - rotation(pose.orientation) * centre_of(a);
-  for (int k = 0; k < 40; ++k) {
-    const double step = distance_at(wide, pose, reach) - 0.4 * delta;
-    pose.position_m -= step * out;
-    if (std::abs(step) < 1e-3 * delta) break;
-  }
-  return pose;
+  return brought_near(wide, pose, out, delta, reach);
+}
+
+/// Half a turn about y, small turns and shifts, then down.
+Pose upon_tips(Bench& wide, const Body& a, const Body& b, double delta, double reach, int i) {
+  const double u = 0.0035 * i;
+  const double radius = b.view.header->radius_m;
+  const Quat small = turned(0.02 * std::sin(2 * u), 0.02 * std::sin(3 * u), 0.03 * std::sin(u));
+  Pose pose{{}, {-small.y, -small.z, small.w, small.x}};
+  pose.position_m = centre_of(b) - rotation(pose.orientation) * centre_of(a) +
+                    radius * Vec3d{0.15 * std::sin(u), 0.15 * std::sin(1.7 * u + 1), 1.2};
+  return brought_near(wide, pose, {0, 0, 1}, delta, reach);
 }
 
 /// Small turns where it lies, pressed in a turning direction until about 0.1 delta is left.
@@ -106,8 +121,9 @@ std::vector<Pose> motion(const SceneName& scene, const Body& a, const Body& b, d
   std::vector<Pose> poses;
   poses.reserve(static_cast<std::size_t>(ticks));
   for (int i = 0; i < ticks; ++i) {
-    poses.push_back(scene.interlock ? pressed(wide, a, delta_m, i)
-                                    : sliding(wide, a, b, delta_m, reach, i));
+    poses.push_back(scene.interlock     ? pressed(wide, a, delta_m, i)
+                    : scene.upside_down ? upon_tips(wide, a, b, delta_m, reach, i)
+                                        : sliding(wide, a, b, delta_m, reach, i));
   }
   return poses;
 }

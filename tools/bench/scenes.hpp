@@ -18,7 +18,8 @@ struct SceneName {
   const char* name;
   const char* a;
   const char* b;
-  bool interlock;  ///< as modelled they interlock with a small clearance
+  bool interlock;            ///< as modelled they interlock with a small clearance
+  bool upside_down = false;  ///< a is turned by half a turn: tips of teeth meet tips
 };
 
 /// A model, baked in memory.

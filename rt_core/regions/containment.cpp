@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/containment.hpp"
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/regions/named_box.hpp"
+
+namespace palpate::regions {
+namespace {
+
+using image::RegionNode;
+using image::RegionTriangle;
+
+/// Bodies lie within this distance of their centre (image::Region::reach).
+constexpr double kMostReach = 1.5;
+/// Where the kernel's rounding may see a gap between the ray and a box that it touches.
+constexpr float kRoom = 1e-5f;
+
+/// Rows: two directions across a ray, and its own. Odd ones: along the axes, where models have
+/// their edges, rays would often meet one.
+constexpr Mat3d kRays[] = {{{0.8, -0.6, 0.0}, {0.36, 0.48, -0.8}, {0.48, 0.64, 0.6}},
+                           {{0.28, 0.96, 0.0}, {-0.768, 0.224, -0.6}, {-0.576, 0.168, 0.8}},
+                           {{-0.6, 0.0, 0.8}, {0.64, -0.6, 0.48}, {0.48, 0.8, 0.36}}};
+
+bool is_one(const ImageView& body) noexcept { return body.header->source_components == 1; }
+
+Vec3d vec(const float* p) noexcept {
+  return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+}
+
+class Ray {
+ public:
+  Ray(const Kernels& kernels, const ImageView& body, Vec3d from, const Mat3d& axes,
+      SearchScratch& scratch, Pace& pace) noexcept
+      : kernels_(kernels), body_(body), from_(from), axes_(axes), scratch_(scratch), pace_(pace) {}
+
+  Side run() noexcept {
+    const Box box = ray_box();
+    const Transform stay = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}, 1};
+    std::uint32_t size = 0;
+    scratch_.stack[size++].a = 0;
+    while (size > 0 && !met_edge_) {
+      if (!pace_.go_on()) return Side::unknown;
+      pace_.charge(1);
+      const RegionNode& node = body_.region_nodes[scratch_.stack[--size].a];
+      float squared[kBatch];
+      std::uint32_t met =
+          children_of(node) & kernels_.test_boxes(box, stay, node, kRoom * kRoom, squared);
+      for (; met != 0; met &= met - 1) {
+        const auto child = node.first + static_cast<std::uint32_t>(__builtin_ctz(met));
+        if (node.leaf != 0) {
+          pass(body_.region_triangles[child]);
+        } else {
+          PALPATE_ASSERT(size < kMaxCandidates);
+          scratch_.stack[size++].a = child;
+        }
+      }
+    }
+    if (met_edge_) return Side::unknown;
+    return winding_ > 0 ? Side::inside : Side::outside;
+  }
+
+ private:
+  /// A box without width, from the point on to beyond the body.
+  Box ray_box() const noexcept {
+    const double length = norm(from_) + kMostReach;
+    const Vec3d middle = from_ + (0.5 * length) * axes_.row2;
+    const Vec3d columns[4] = {axes_.row0, axes_.row1, axes_.row2, middle};
+    Box box{};
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      box.x[k] = static_cast<float>(columns[k].x);
+      box.y[k] = static_cast<float>(columns[k].y);
+      box.z[k] = static_cast<float>(columns[k].z);
+    }
+    box.half[2] = static_cast<float>(0.5 * length) + kRoom;
+    return box;
+  }
+
+  /// Twice the area of the ray and an edge, seen along the ray; exactly the opposite for the
+  /// triangle on the edge's other side.
+  static double area(Vec3d p, Vec3d q) noexcept { return p.x * q.y - q.x * p.y; }
+
+  void pass(const RegionTriangle& t) noexcept {
+    const Vec3d p[3] = {axes_ * (vec(t.corners) - from_), axes_ * (vec(t.corners + 3) - from_),
+                        axes_ * (vec(t.corners + 6) - from_)};
+    const double e[3] = {area(p[1], p[2]), area(p[2], p[0]), area(p[0], p[1])};
+    const bool left = e[0] > 0 || e[1] > 0 || e[2] > 0;
+    const bool right = e[0] < 0 || e[1] < 0 || e[2] < 0;
+    if (left && right) return;
+    const double ahead = e[0] * p[0].z + e[1] * p[1].z + e[2] * p[2].z;
+    if (e[0] == 0 || e[1] == 0 || e[2] == 0 || ahead == 0) {
+      met_edge_ = true;
+      return;
+    }
+    if (left == (ahead > 0)) winding_ += left ? 1 : -1;
+  }
+
+  const Kernels& kernels_;
+  const ImageView& body_;
+  Vec3d from_;
+  const Mat3d& axes_;
+  SearchScratch& scratch_;
+  Pace& pace_;
+  int winding_ = 0;  // triangles passed outwards less those passed inwards
+  bool met_edge_ = false;
+};
+
+}  // namespace
+
+Side side_of(const Kernels& kernels, const ImageView& body, Vec3d point, SearchScratch& scratch,
+             Pace& pace) noexcept {
+  if ((body.header->flags & static_cast<std::uint32_t>(image::HeaderFlag::open)) != 0) {
+    return Side::outside;
+  }
+  if (squared_norm(point) > kMostReach * kMostReach) return Side::outside;
+  for (const Mat3d& axes : kRays) {
+    const Side side = Ray(kernels, body, point, axes, scratch, pace).run();
+    if (side != Side::unknown) return side;
+  }
+  return Side::unknown;
+}
+
+Side contained(const Kernels& kernels, const levels::PairState& pair, SearchScratch& scratch,
+               Pace& pace) noexcept {
+  const Mat3d& r = pair.b_in_a.rotation;
+  const Vec3d t = pair.b_in_a.translation;
+  if (is_one(*pair.image_a)) {
+    const Vec3d of_a = pair.scale_a * vec(pair.image_a->region_triangles[0].corners);
+    const Vec3d in_b = (1.0 / pair.scale_b) * (transpose(r) * (of_a - t));
+    const Side side = side_of(kernels, *pair.image_b, in_b, scratch, pace);
+    if (side != Side::outside) return side;
+  }
+  if (is_one(*pair.image_b)) {
+    const Vec3d of_b = pair.scale_b * vec(pair.image_b->region_triangles[0].corners);
+    const Vec3d in_a = (1.0 / pair.scale_a) * (r * of_b + t);
+    return side_of(kernels, *pair.image_a, in_a, scratch, pace);
+  }
+  return Side::outside;
+}
+
+}  // namespace palpate::regions

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Is one surface wholly inside another? Distances and crossings of triangles do not tell.
+#pragma once
+
+#include <cstdint>
+
+#include "rt_core/levels/body_pair.hpp"
+#include "rt_core/regions/search.hpp"
+
+namespace palpate::regions {
+
+enum class Side : std::uint8_t { unknown, outside, inside };
+
+/// What is kept of a pair from tick to tick.
+struct Containment {
+  bool inside = false;   ///< one body is inside the other
+  bool doubtful = true;  ///< a jump, or surfaces that may have passed through each other since
+  Witness nearest;       ///< inside, and farther than delta from the surface: the nearest pair
+};
+
+/// On which side of a closed surface a point lies: inside where a ray from it passes through more
+/// triangles outwards than inwards. Shared edges are passed once, for both triangles see them in
+/// the same numbers; a ray that meets an edge exactly is given up for another direction. A surface
+/// that faces inwards, a room, has no inside.
+/// @param point  image coordinates of the body
+/// An open surface has no inside either. Unknown where the budget or all directions are used up.
+/// Cost: a unit for each node whose box the ray passes through, for at most three rays.
+[[nodiscard]] Side side_of(const Kernels& kernels, const ImageView& body, Vec3d point,
+                           SearchScratch& scratch, Pace& pace) noexcept;
+
+/// Side::inside where a vertex of one body is inside the other, for bodies whose triangles do not
+/// cross: then the whole body is. A body of several components is not asked for: its vertex would
+/// not speak for all of it.
+[[nodiscard]] Side contained(const Kernels& kernels, const levels::PairState& pair,
+                             SearchScratch& scratch, Pace& pace) noexcept;
+
+}  // namespace palpate::regions

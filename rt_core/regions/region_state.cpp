@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/region_state.hpp"
+
+#include "rt_core/regions/pair_frame.hpp"
+
+namespace palpate::regions {
+namespace {
+
+/// Rounding of the radius, and of the axes that it is a length along.
+constexpr double kRadiusSlack = 1 + 1e-5;
+
+/// Of a region, in the coordinates of b.
+Vec3d centre_of(const levels::PairState& pair, std::uint32_t region) noexcept {
+  const image::Region& r = pair.image_a->regions[region];
+  const image::RegionNode& over = pair.image_a->region_nodes[r.parent];
+  const Vec3d in_a = pair.scale_a * Vec3d{static_cast<double>(over.centre[0][r.slot]),
+                                          static_cast<double>(over.centre[1][r.slot]),
+                                          static_cast<double>(over.centre[2][r.slot])};
+  return transpose(pair.b_in_a.rotation) * (in_a - pair.b_in_a.translation);
+}
+
+}  // namespace
+
+double moved_since(const RegionState& state, const levels::PairState& pair,
+                   std::uint32_t region) noexcept {
+  const double radius =
+      kRadiusSlack * pair.scale_a * static_cast<double>(pair.image_a->regions[region].radius);
+  return norm(centre_of(pair, region) - state.centre) + (pair.turn - state.turn_at) * radius +
+         kMotionSlack;
+}
+
+void prove(RegionState& state, const levels::PairState& pair, std::uint32_t region,
+           float rest) noexcept {
+  const float nearest = state.near.count > 0 ? state.near.pairs[0].distance - kRounding : rest;
+  state.rest = rest;
+  state.lower = nearest < rest ? nearest : rest;
+  state.centre = centre_of(pair, region);
+  state.travel_at = pair.travel;
+  state.turn_at = pair.turn;
+}
+
+}  // namespace palpate::regions

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is known of a region's distance, and for how long it holds.
+#pragma once
+
+#include <cstdint>
+
+#include "rt_core/levels/body_pair.hpp"
+#include "rt_core/regions/near_pairs.hpp"
+
+namespace palpate::regions {
+
+/// Rounding of the centres and of the odometers, in units.
+inline constexpr double kMotionSlack = 1e-9;
+
+/// What is kept of a region from tick to tick. Lengths in units of the pair.
+///
+/// The proof: when the region's centre stood at `centre`, every pair of its triangles and b's was
+/// in `near`, or at least `rest` apart. Since then no distance has shrunk by more than the region
+/// has moved (moved_since()).
+struct RegionState {
+  float rest = 0;
+  float lower = 0;                    ///< the least of `rest` and of the distances of `near`
+  Vec3d centre{};                     ///< in the coordinates of b
+  double travel_at = 0;               ///< PairState::travel
+  double turn_at = 0;                 ///< PairState::turn
+  Witness witness;                    ///< its distance is of the last tick it was measured in
+  std::uint32_t seed = image::kNone;  ///< where to look for a witness: a child of b's tree
+  NearPairs near;
+};
+
+/// How far any point of a region has moved against b since the proof, at most: the displacement of
+/// its centre, not the way it took, and its radius times all turns since.
+[[nodiscard]] double moved_since(const RegionState& state, const levels::PairState& pair,
+                                 std::uint32_t region) noexcept;
+
+/// The same by the odometers alone: the way and not the displacement, and all of the body. Reads
+/// nothing but the state, so that far regions cost next to nothing.
+[[nodiscard]] inline double way_since(const RegionState& state,
+                                      const levels::PairState& pair) noexcept {
+  constexpr double kMostReach = 1.51;  // of image::Region::reach, with room for rounding
+  return (pair.travel - state.travel_at) + (pair.turn - state.turn_at) * pair.scale_a * kMostReach +
+         kMotionSlack;
+}
+
+/// Proves at the present poses that the pairs which are not in state.near are at least `rest`
+/// apart.
+void prove(RegionState& state, const levels::PairState& pair, std::uint32_t region,
+           float rest) noexcept;
+
+}  // namespace palpate::regions

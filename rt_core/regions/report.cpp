@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/report.hpp"
+
+namespace palpate::regions {
+namespace {
+
+using image::RegionTriangle;
+using levels::PairState;
+
+Vec3d corner(const RegionTriangle& t, std::uint32_t i, double scale) noexcept {
+  return scale * Vec3d{static_cast<double>(t.corners[3 * i]),
+                       static_cast<double>(t.corners[3 * i + 1]),
+                       static_cast<double>(t.corners[3 * i + 2])};
+}
+
+class Report {
+ public:
+  Report(QueryMemory& memory, std::span<const Active> active, Pace& pace,
+         QueryResult& result) noexcept
+      : memory_(memory), active_(active), pace_(pace), result_(result) {}
+
+  /// Witnesses nearer than delta become contacts, sixteen at a time.
+  void run() noexcept {
+    std::uint32_t batch[kBatch];
+    std::uint32_t pending = 0;
+    for (std::uint32_t i = 0; i < active_.size(); ++i) {
+      const Active& item = active_[i];
+      const Witness& witness = state_of(item).witness;
+      const bool near = witness.distance < static_cast<float>(pair_of(item).delta);
+      if (witness.known() && (near || is_way_out(item))) {
+        batch[pending++] = i;
+      }
+      if (pending == kBatch || (i + 1 == active_.size() && pending > 0)) {
+        report_batch(batch, pending);
+        pending = 0;
+      }
+    }
+  }
+
+ private:
+  const PairState& pair_of(const Active& item) noexcept { return memory_.pairs[item.pair]; }
+  bool is_way_out(const Active& item) noexcept {
+    const Containment& kept = memory_.containment[item.pair];
+    return kept.inside && kept.nearest.known() && kept.nearest.same_pair(state_of(item).witness);
+  }
+  const RegionState& state_of(const Active& item) noexcept { return memory_.states[item.state]; }
+
+  void report_batch(const std::uint32_t (&batch)[kBatch], std::uint32_t count) noexcept {
+    Vec3d origin[kBatch];
+    TriangleLanes& lanes = memory_.search->kernel.lanes;
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      origin[i] = place(active_[batch[i < count ? i : 0]], i, lanes);
+    }
+    WitnessLanes found;
+    memory_.kernels->witnesses(memory_.search->kernel, found);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Active& item = active_[batch[i]];
+      if ((found.crossing >> i & 1u) != 0) {
+        report_crossing(item);
+        continue;
+      }
+      const Vec3d on_a = origin[i] + lane(found.on_a, i);
+      report_apart(item, on_a, lane(found.apart, i));
+    }
+  }
+
+  static Vec3d lane(const float (&rows)[3][kBatch], std::uint32_t i) noexcept {
+    return {static_cast<double>(rows[0][i]), static_cast<double>(rows[1][i]),
+            static_cast<double>(rows[2][i])};
+  }
+
+  /// The witness's triangles in the coordinates of a, relative to a corner that is returned: in
+  /// double up to there, so that only the size of the pair is rounded.
+  Vec3d place(const Active& item, std::uint32_t i, TriangleLanes& lanes) noexcept {
+    const PairState& pair = pair_of(item);
+    const Witness& witness = state_of(item).witness;
+    const RegionTriangle& a = pair.image_a->region_triangles[witness.a];
+    const RegionTriangle& b = pair.image_b->region_triangles[witness.b];
+    const Vec3d origin = corner(a, 0, pair.scale_a);
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      put(corner(a, c, pair.scale_a) - origin, c, i, lanes.a);
+      const Vec3d of_b = pair.b_in_a.rotation * corner(b, c, pair.scale_b);
+      put(of_b + pair.b_in_a.translation - origin, c, i, lanes.b);
+    }
+    return origin;
+  }
+
+  static void put(Vec3d p, std::uint32_t corner, std::uint32_t i,
+                  float (&rows)[9][kBatch]) noexcept {
+    rows[3 * corner][i] = static_cast<float>(p.x);
+    rows[3 * corner + 1][i] = static_cast<float>(p.y);
+    rows[3 * corner + 2][i] = static_cast<float>(p.z);
+  }
+
+  void report_apart(const Active& item, Vec3d on_a, Vec3d apart) noexcept {
+    const PairState& pair = pair_of(item);
+    const Witness& witness = state_of(item).witness;
+    const double distance = norm(apart);
+    constexpr double kTouching = 1e-9;  // a direction of so short a vector is rounding
+    const Vec3d normal = distance > kTouching ? (1 / distance) * apart : facing(pair, witness);
+    // Touching, the outward normal of b's is right whichever side a comes from.
+    const bool flip = memory_.containment[item.pair].inside && distance > kTouching;
+    const double side = flip ? -1 : 1;
+    add(item, {on_a, on_a - apart, side * normal, side * distance,
+               pair.image_a->region_triangles[witness.a].piece,
+               pair.image_b->region_triangles[witness.b].piece});
+  }
+
+  /// Where two triangles touch: the outward normal of b's.
+  static Vec3d facing(const PairState& pair, const Witness& witness) noexcept {
+    const RegionTriangle& t = pair.image_b->region_triangles[witness.b];
+    const Vec3d p = corner(t, 0, 1);
+    const Vec3d n = pair.b_in_a.rotation * cross(corner(t, 1, 1) - p, corner(t, 2, 1) - p);
+    const double length = norm(n);
+    return length > 0 ? (1 / length) * n : Vec3d{1, 0, 0};
+  }
+
+  void report_crossing(const Active& item) noexcept {
+    const PairState& pair = pair_of(item);
+    const PairFrame& frame = memory_.frames[item.pair];
+    const Witness& witness = state_of(item).witness;
+    CrossingScratch& scratch = *memory_.crossing;
+    scratch.list.count = 0;
+    find_crossings(*memory_.kernels, frame, *memory_.search, pace_, item.region, scratch.list);
+    // Only where the budget or rounding kept the search from finding any: the list shall not depend
+    // on how the witness came about.
+    if (scratch.list.count == 0) note_crossing(frame, witness.a, witness.b, scratch.list);
+    if (scratch.list.count == kMaxCrossings) result_.iteration_cap_met = true;
+    const Crossing c = deepest(pair, scratch);
+    if (!c.exact) result_.iteration_cap_met = true;
+    add(item, {c.point_a, c.point_b, c.normal, -c.depth, c.piece_a, c.piece_b});
+  }
+
+  /// In the coordinates of a, lengths in units.
+  struct Found {
+    Vec3d point_a;
+    Vec3d point_b;
+    Vec3d normal;
+    double distance;
+    std::uint32_t piece_a;
+    std::uint32_t piece_b;
+  };
+
+  void add(const Active& item, const Found& found) noexcept {
+    const PairState& pair = pair_of(item);
+    if (result_.contacts == memory_.contacts.size()) {
+      result_.truncated_by_memory = true;
+      return;
+    }
+    Contact& out = memory_.contacts[result_.contacts++];
+    out.point_a_m = pair.centre_a_m + pair.rotation_a * (pair.unit_m * found.point_a);
+    out.point_b_m = pair.centre_a_m + pair.rotation_a * (pair.unit_m * found.point_b);
+    out.normal = pair.rotation_a * found.normal;
+    out.distance_m = found.distance * pair.unit_m;
+    out.weight = 0;
+    out.pair = item.pair;
+    out.piece_a = found.piece_a;
+    out.level_a = 0;
+    out.piece_b = found.piece_b;
+    out.level_b = 0;
+    if (out.distance_m < result_.min_distance_m) result_.min_distance_m = out.distance_m;
+  }
+
+  QueryMemory& memory_;
+  std::span<const Active> active_;
+  Pace& pace_;
+  QueryResult& result_;
+};
+
+}  // namespace
+
+void report(QueryMemory& memory, std::span<const Active> active, Pace& pace,
+            QueryResult& result) noexcept {
+  Report(memory, active, pace, result).run();
+}
+
+}  // namespace palpate::regions

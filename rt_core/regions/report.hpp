@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a query found, as contacts.
+#pragma once
+
+#include <span>
+
+#include "rt_core/regions/regions_engine.hpp"
+
+namespace palpate::regions {
+
+/// Appends a contact to memory.contacts for every active region whose witness, measured at the
+/// present poses, is nearer than delta: closest points and normal, or depth and direction of
+/// overlap where its triangles cross.
+///
+/// Witnesses are placed in double and compared relative to the pair, sixteen at a time. Cost:
+/// O(active), and for every crossing region what find_crossings() and deepest() take.
+void report(QueryMemory& memory, std::span<const Active> active, Pace& pace,
+            QueryResult& result) noexcept;
+
+}  // namespace palpate::regions

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One body wholly inside another: no triangles cross, and yet they overlap.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "rt_core/regions/containment.hpp"
+#include "tests/support/baked_scene.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace palpate::test {
+namespace {
+
+constexpr bake::ForEngine kRegions = bake::ForEngine::regions;
+constexpr double kDelta = 0.02;
+
+Settings settings() {
+  return {
+      .engine = EngineKind::regions, .delta_m = kDelta, .exact = true, .cluster_radius_m = kDelta};
+}
+
+bake::Mesh inside_out(bake::Mesh mesh) {
+  for (bake::Face& f : mesh.faces) std::swap(f[1], f[2]);
+  return mesh;
+}
+
+struct Small {
+  BakedBody body{ball(8, 10, 0.1), kRegions};
+};
+
+TickResult tick_at(BakedScene& scene, Vec3d at) {
+  const Pose poses[2] = {{at, {}}, {}};
+  return tick_or_fail(*scene.engine, poses);
+}
+
+void expect_pushed_out(const TickResult& r, Vec3d out) {
+  ASSERT_FALSE(r.contacts.empty());
+  EXPECT_LT(r.min_distance_m, 0);
+  EXPECT_GT(dot(r.wrench.force_N, out), 0);
+  for (const Contact& c : r.contacts) EXPECT_NEAR(norm(c.normal), 1, 1e-6);
+}
+
+TEST(RegionsContained, small_body_inside_a_large_one_is_pushed_out_the_nearest_way) {
+  const Small small;
+  const BakedBody large(box(1, 1, 1), kRegions);
+  BakedScene scene({small.body.view, large.view}, {{0, 1}}, settings());
+  for (const Vec3d axis : {Vec3d{1, 0, 0}, Vec3d{0, -1, 0}, Vec3d{0, 0, 1}}) {
+    const Vec3d aside{0.02, 0.03, 0.01};
+    expect_pushed_out(tick_at(scene, 0.7 * axis + aside), axis);    // deep: nothing within delta
+    expect_pushed_out(tick_at(scene, 0.885 * axis + aside), axis);  // just below the surface
+    EXPECT_TRUE(tick_at(scene, 1.5 * axis + aside).contacts.empty());
+  }
+}
+
+TEST(RegionsContained, large_body_around_a_small_one_is_pushed_off_it) {
+  const Small small;
+  const BakedBody large(box(1, 1, 1), kRegions);
+  BakedScene scene({large.view, small.body.view}, {{0, 1}}, settings());
+  expect_pushed_out(tick_at(scene, {0.7, 0.02, 0.03}), {1, 0, 0});
+}
+
+TEST(RegionsContained, slow_way_in_is_noticed_and_the_way_out_too) {
+  const Small small;
+  const BakedBody large(box(1, 1, 1), kRegions);
+  BakedScene scene({small.body.view, large.view}, {{0, 1}}, settings());
+  for (double z = 1.13; z > 0.6; z -= 0.005) {
+    const TickResult r = tick_at(scene, {0.02, 0.03, z});
+    if (z < 1.09) {
+      ASSERT_FALSE(r.contacts.empty()) << z;
+      EXPECT_GT(r.wrench.force_N.z, 0) << z;
+    }
+  }
+  for (double z = 0.6; z < 1.13; z += 0.005) {
+    const TickResult r = tick_at(scene, {0.02, 0.03, z});
+    if (z < 1.09) {
+      ASSERT_FALSE(r.contacts.empty()) << z;
+      EXPECT_GT(r.wrench.force_N.z, 0) << z;
+    }
+  }
+  EXPECT_GT(tick_at(scene, {0.02, 0.03, 1.115}).min_distance_m, 0);
+}
+
+TEST(RegionsContained, rooms_and_open_surfaces_have_no_inside) {
+  const Small small;
+  const BakedBody room(inside_out(box(1, 1, 1)), kRegions);
+  const BakedBody open(bowl(8, 16, 1.2), kRegions);
+  for (const BakedBody* around : {&room, &open}) {
+    BakedScene scene({small.body.view, around->view}, {{0, 1}}, settings());
+    EXPECT_TRUE(tick_at(scene, {0.02, 0.03, 0.01}).contacts.empty());
+  }
+}
+
+TEST(RegionsContained, wall_of_a_shell_is_inside_and_its_cavity_is_not) {
+  const BakedBody small(ball(6, 8, 0.04), kRegions);
+  bake::Mesh shell = ball(12, 16, 1);
+  const bake::Mesh cavity = inside_out(ball(12, 16, 0.7));
+  const auto first = static_cast<std::uint32_t>(shell.points.size());
+  shell.points.insert(shell.points.end(), cavity.points.begin(), cavity.points.end());
+  for (const bake::Face& f : cavity.faces) {
+    shell.faces.push_back({f[0] + first, f[1] + first, f[2] + first});
+  }
+  const BakedBody around(std::move(shell), kRegions);
+  BakedScene scene({small.view, around.view}, {{0, 1}}, settings());
+  EXPECT_TRUE(tick_at(scene, {0.02, 0.03, 0.01}).contacts.empty());
+  expect_pushed_out(tick_at(scene, {0.9, 0.01, 0.02}), {1, 0, 0});
+  expect_pushed_out(tick_at(scene, {0.78, 0.01, 0.02}), {-1, 0, 0});
+}
+
+TEST(RegionsContained, side_of_a_point_is_that_of_the_shape) {
+  const BakedBody body(bumpy_ball(24, 30, 1), kRegions);
+  const double radius = body.view.header->radius_m;
+  const double* centre = body.view.header->centre_m;
+  std::mt19937 rng(11);
+  std::uniform_real_distribution<double> coordinate(-1.4, 1.4);
+  const auto scratch = std::make_unique<regions::SearchScratch>();
+  int inside = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3d p{coordinate(rng), coordinate(rng), coordinate(rng)};
+    const double distance = norm(radius * p + Vec3d{centre[0], centre[1], centre[2]});
+    if (distance > 0.7 && distance < 1.3) continue;  // the bumps are here
+    Meter meter({}, 0);
+    regions::Pace pace(meter);
+    const regions::Side side =
+        regions::side_of(regions::best_kernels(), body.view, p, *scratch, pace);
+    ASSERT_EQ(side, distance < 1 ? regions::Side::inside : regions::Side::outside) << i;
+    inside += side == regions::Side::inside;
+  }
+  EXPECT_GT(inside, 30);
+}
+
+}  // namespace
+}  // namespace palpate::test
