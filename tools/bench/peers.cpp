@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "host_bake/mesh/read.hpp"
-#include "tools/bench/peers_fcl.hpp"
+#include "tools/bench/mesh_fcl.hpp"
 #include "tools/palpate/poses.hpp"
 #include "tools/palpate/scene_engine.hpp"
 #include "tools/palpate/sweep_figures.hpp"
@@ -92,7 +92,7 @@ void add_fcl(const std::shared_ptr<FclPair>& pair, std::uint32_t tool, std::vect
                  "one least distance",
                  nothing,
                  [=](std::span<const Pose> poses) {
-                   return Answer{pair->distance_m(poses[a], poses[b]), 1};
+                   return Answer{pair->distance(poses[a], poses[b]), 1};
                  },
                  {},
                  {}});
