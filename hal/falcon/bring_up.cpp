@@ -7,6 +7,7 @@
 
 #include "hal/falcon/ftdi.hpp"
 #include "hal/falcon/messages.hpp"
+#include "hal/text_table.hpp"
 
 namespace palpate::hal::falcon {
 namespace {
@@ -134,19 +135,16 @@ Step load(FtdiLine& line, std::span<const std::byte> firmware) {
 }
 
 std::string mend_of(Phase phase) {
-  switch (phase) {
-    case Phase::probe:
-    case Phase::enter_loader:
-      return "plug the device in again; if it stays, try another USB port";
-    case Phase::hello:
-    case Phase::start_upload:
-      return "unplug its power and its USB cable, wait, plug both in, and try without a hub";
-    case Phase::upload:
-      return "try another cable, and a port without a hub";
-    case Phase::run:
-      return "check that the firmware file is one for the Falcon";
-  }
-  return "";
+  constexpr const char* kReplug = "plug the device in again; if it stays, try another USB port";
+  constexpr const char* kRestart =
+      "unplug its power and its USB cable, wait, plug both in, and try without a hub";
+  return text_in<Phase>({{Phase::probe, kReplug},
+                         {Phase::enter_loader, kReplug},
+                         {Phase::hello, kRestart},
+                         {Phase::start_upload, kRestart},
+                         {Phase::upload, "try another cable, and a port without a hub"},
+                         {Phase::run, "check that the firmware file is one for the Falcon"}},
+                        phase, "");
 }
 
 DeviceProblem problem_of(const Failure& failure, int attempts) {
@@ -158,21 +156,13 @@ DeviceProblem problem_of(const Failure& failure, int attempts) {
 }  // namespace
 
 std::string_view name(Phase phase) noexcept {
-  switch (phase) {
-    case Phase::probe:
-      return "probe";
-    case Phase::enter_loader:
-      return "enter loader";
-    case Phase::hello:
-      return "hello";
-    case Phase::start_upload:
-      return "start upload";
-    case Phase::upload:
-      return "upload";
-    case Phase::run:
-      return "run";
-  }
-  return "unknown";
+  return text_in<Phase>({{Phase::probe, "probe"},
+                         {Phase::enter_loader, "enter loader"},
+                         {Phase::hello, "hello"},
+                         {Phase::start_upload, "start upload"},
+                         {Phase::upload, "upload"},
+                         {Phase::run, "run"}},
+                        phase, "unknown");
 }
 
 std::optional<DeviceProblem> bring_up(Transport& transport, std::span<const std::byte> firmware) {

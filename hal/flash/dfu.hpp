@@ -44,8 +44,8 @@ enum class DfuState : std::uint8_t {
 
 enum class DfuStatus : std::uint8_t {
   ok = 0x0,
-  target = 0x1,  ///< not for use by this device
-  file = 0x2,
+  target = 0x1,  ///< not for use by this device: an engine for it needs more memory
+  file = 0x2,    ///< not signed with the device's key
   write = 0x3,
   erase = 0x4,
   check_erased = 0x5,
@@ -54,7 +54,7 @@ enum class DfuStatus : std::uint8_t {
   address = 0x8,  ///< beyond the slot, or the slot is in use
   not_done = 0x9,
   firmware = 0xa,
-  vendor = 0xb,
+  vendor = 0xb,  ///< older than what the device has confirmed, by its security counter
   usb_reset = 0xc,
   power_on_reset = 0xd,
   unknown = 0xe,

@@ -19,6 +19,12 @@ DfuStatus status_of(UpdateStatus status) noexcept {
       return DfuStatus::program;
     case UpdateStatus::not_an_image:
       return DfuStatus::verify;
+    case UpdateStatus::not_signed:
+      return DfuStatus::file;
+    case UpdateStatus::outdated:
+      return DfuStatus::vendor;
+    case UpdateStatus::too_demanding:
+      return DfuStatus::target;
   }
   return DfuStatus::unknown;
 }
@@ -72,7 +78,7 @@ DfuAnswer DfuDevice::upload(std::uint16_t block, std::size_t wanted) noexcept {
   if (state_ == DfuState::idle && block == 0) {
     next_block_ = 0;
     uploaded_ = 0;
-    image_ = slots_.state(slot_).image;
+    image_ = slots_.state(slot_).file;
     state_ = DfuState::upload_idle;
   }
   if (state_ != DfuState::upload_idle || wanted > kTransferBytes) {

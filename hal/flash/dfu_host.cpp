@@ -7,6 +7,7 @@
 
 #include "hal/flash/dfu.hpp"
 #include "hal/protocol/bytes.hpp"
+#include "hal/text_table.hpp"
 
 namespace palpate::hal::flash {
 namespace {
@@ -28,25 +29,18 @@ struct Status {
 };
 
 const char* text_of(DfuStatus status) {
-  switch (status) {
-    case DfuStatus::ok:
-      return "no error";
-    case DfuStatus::target:
-    case DfuStatus::file:
-      return "the file is not for this device";
-    case DfuStatus::write:
-    case DfuStatus::program:
-      return "its flash cannot be written";
-    case DfuStatus::erase:
-    case DfuStatus::check_erased:
-      return "its flash cannot be erased";
-    case DfuStatus::verify:
-      return "what arrived is no sound image";
-    case DfuStatus::address:
-      return "the slot is in use or too small";
-    default:
-      return "it reports an error";
-  }
+  return text_in<DfuStatus>(
+      {{DfuStatus::ok, "no error"},
+       {DfuStatus::target, "an engine for it needs more memory than it has"},
+       {DfuStatus::file, "it is not signed with the device's key"},
+       {DfuStatus::write, "its flash cannot be written"},
+       {DfuStatus::erase, "its flash cannot be erased"},
+       {DfuStatus::check_erased, "its flash cannot be erased"},
+       {DfuStatus::program, "its flash cannot be written"},
+       {DfuStatus::verify, "what arrived is no sound image"},
+       {DfuStatus::address, "the slot is in use or too small"},
+       {DfuStatus::vendor, "it is older than what the device has confirmed (--counter)"}},
+      status, "it reports an error");
 }
 
 DeviceProblem problem(const char* phase, const std::string& cause) {

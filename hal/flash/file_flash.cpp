@@ -14,8 +14,6 @@
 namespace palpate::hal::flash {
 namespace {
 
-constexpr std::byte kErased{0xff};
-
 /// Closes itself: the mapping stays.
 struct Descriptor {
   int fd;
@@ -31,7 +29,7 @@ struct Descriptor {
 }  // namespace
 
 FileFlash::FileFlash(const std::filesystem::path& file, const SlotLayout& layout)
-    : layout_(layout), size_(std::size_t{kSlots} * layout.slot_bytes()) {
+    : layout_(layout), size_(layout.flash_bytes()) {
   const Descriptor open{::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)};
   struct stat status {};
   if (open.fd < 0 || ::fstat(open.fd, &status) != 0) fail(errno, file);

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/flash/slots.hpp"
 
-#include "hal/protocol/bytes.hpp"
-#include "hal/protocol/crc32.hpp"
-#include "rt_core/image/view.hpp"
-
 namespace palpate::hal::flash {
 namespace {
 
-constexpr std::byte kErased{0xff};
 constexpr std::byte kCommitByte{0xc3};
 
 // Offsets within a record; each group is one program unit.
@@ -17,44 +12,12 @@ constexpr std::uint32_t kCommitAt = 32;
 constexpr std::uint32_t kTriedAt = 64;
 constexpr std::uint32_t kConfirmedAt = kTriedAt + kMaxTries * kProgramBytes;
 
-// Offsets within the header.
-constexpr std::size_t kMagicAt = 0;
-constexpr std::size_t kSequenceAt = 8;
-constexpr std::size_t kImageBytesAt = 16;
-constexpr std::size_t kCrcAt = 24;
 constexpr std::uint64_t kMagic = 0x544f4c53504c4150;  // "PALPSLOT"
 
-using Unit = std::array<std::byte, kProgramBytes>;
-
-constexpr Unit unit_of(std::byte value) noexcept {
-  Unit unit{};
+constexpr ProgramUnit unit_of(std::byte value) noexcept {
+  ProgramUnit unit{};
   for (std::byte& b : unit) b = value;
   return unit;
-}
-
-Unit header_of(std::uint64_t sequence, std::uint32_t image_bytes) noexcept {
-  Unit unit{};
-  put(std::span<std::byte>(unit), kMagicAt, kMagic);
-  put(std::span<std::byte>(unit), kSequenceAt, sequence);
-  put(std::span<std::byte>(unit), kImageBytesAt, image_bytes);
-  const auto covered = std::span<const std::byte>(unit).first(kCrcAt);
-  put(std::span<std::byte>(unit), kCrcAt, ~crc32_update(kCrc32Start, covered));
-  return unit;
-}
-
-bool all_are(std::span<const std::byte> bytes, std::byte value) noexcept {
-  bool all = true;
-  for (const std::byte b : bytes) all = all && b == value;
-  return all;
-}
-
-/// Exactly the header that this program writes.
-bool is_header(std::span<const std::byte> bytes) noexcept {
-  const Unit right =
-      header_of(get<std::uint64_t>(bytes, kSequenceAt), get<std::uint32_t>(bytes, kImageBytesAt));
-  bool same = true;
-  for (std::size_t i = 0; i < kProgramBytes; ++i) same = same && bytes[i] == right[i];
-  return same;
 }
 
 }  // namespace
@@ -73,6 +36,9 @@ std::uint8_t Slots::start() noexcept {
             offset_of(newest) + kTriedAt + chosen.tries * static_cast<std::uint32_t>(kProgramBytes),
             unit_of(std::byte{0}))) {
       active_ = newest;
+      active_counter_ = chosen.counter;
+      // The power may have been cut between the word of confirm() and the counter.
+      if (chosen.confirmed && !raise_counter()) active_ = kNone;
       break;
     }
     // A start that cannot be recorded could be repeated for ever.
@@ -84,8 +50,22 @@ std::uint8_t Slots::start() noexcept {
 bool Slots::confirm() noexcept {
   if (active_ == kNone) return false;
   const auto word = record_of(active_).subspan(kConfirmedAt, kProgramBytes);
-  return !all_are(word, kErased) ||
-         flash_.program(offset_of(active_) + kConfirmedAt, unit_of(std::byte{0}));
+  const bool confirmed = !all_are(word, kErased) ||
+                         flash_.program(offset_of(active_) + kConfirmedAt, unit_of(std::byte{0}));
+  return confirmed && raise_counter();
+}
+
+bool Slots::raise_counter() noexcept { return !rules_.key || counter_.raise(active_counter_); }
+
+UpdateStatus Slots::judge(const signature::Contents& contents) const noexcept {
+  ImageView view;
+  if (validate(contents.image, view) != Status::ok) return UpdateStatus::not_an_image;
+  if (rules_.engine_bytes != nullptr && rules_.engine_bytes(view) > rules_.engine_memory_bytes) {
+    return UpdateStatus::too_demanding;
+  }
+  if (!rules_.key) return UpdateStatus::ok;
+  if (!signature::is_signed_by(*rules_.key, contents)) return UpdateStatus::not_signed;
+  return contents.counter < counter_.value() ? UpdateStatus::outdated : UpdateStatus::ok;
 }
 
 SlotState Slots::state(std::uint8_t slot) const noexcept {
@@ -93,15 +73,16 @@ SlotState Slots::state(std::uint8_t slot) const noexcept {
   const auto record = record_of(slot);
   const auto header = record.subspan(kHeaderAt, kProgramBytes);
   const bool committed = all_are(record.subspan(kCommitAt, kProgramBytes), kCommitByte);
-  if (!committed || !is_header(header)) return out;
-  const auto image_bytes = get<std::uint32_t>(header, kImageBytesAt);
-  if (image_bytes > layout_.capacity()) return out;
-  const auto image = flash_.bytes().subspan(image_offset(slot), image_bytes);
-  ImageView view;
-  if (validate(image, view) != Status::ok) return out;
+  Entry entry{kMagic};  // the update's sequence and the bytes that were written
+  if (!committed || !entry.read(header) || entry.second > layout_.capacity()) return out;
+  const auto file = flash_.bytes().subspan(image_offset(slot), entry.second);
+  const signature::Contents contents = signature::contents_of(file);
+  if (judge(contents) != UpdateStatus::ok) return out;
 
-  out.image = image;
-  out.sequence = get<std::uint64_t>(header, kSequenceAt);
+  out.file = file;
+  out.image = contents.image;
+  out.counter = contents.counter;
+  out.sequence = entry.first;
   out.confirmed = !all_are(record.subspan(kConfirmedAt, kProgramBytes), kErased);
   while (out.tries < kMaxTries &&
          !all_are(record.subspan(kTriedAt + out.tries * kProgramBytes, kProgramBytes), kErased)) {
@@ -162,11 +143,11 @@ UpdateStatus Slots::finish() noexcept {
   const std::uint8_t slot = updating_;
   abort();
   const std::uint32_t at = offset_of(slot);
-  const auto image = flash_.bytes().subspan(image_offset(slot), written_);
-  ImageView view;
-  if (validate(image, view) != Status::ok) return UpdateStatus::not_an_image;
+  const auto file = flash_.bytes().subspan(image_offset(slot), written_);
+  const UpdateStatus judged = judge(signature::contents_of(file));
+  if (judged != UpdateStatus::ok) return judged;
   const bool recorded =
-      flash_.program(at + kHeaderAt, header_of(newest_sequence() + 1, written_)) &&
+      flash_.program(at + kHeaderAt, Entry{kMagic, newest_sequence() + 1, written_}.bytes()) &&
       flash_.program(at + kCommitAt, unit_of(kCommitByte));
   return recorded ? UpdateStatus::ok : UpdateStatus::write_failed;
 }
@@ -189,9 +170,11 @@ std::span<const std::byte> Slots::record_of(std::uint8_t slot) const noexcept {
 
 std::uint64_t Slots::newest_sequence() const noexcept {
   std::uint64_t newest = 0;
+  // Also of an image that is not to be used: numbers only have to grow.
   for (std::uint8_t slot = 0; slot < kSlots; ++slot) {
-    const std::uint64_t sequence = state(slot).sequence;
-    newest = sequence > newest ? sequence : newest;
+    Entry entry{kMagic};
+    const bool known = entry.read(record_of(slot).subspan(kHeaderAt, kProgramBytes));
+    if (known && entry.first > newest) newest = entry.first;
   }
   return newest;
 }

@@ -6,8 +6,8 @@
 // record of a slot and the order of writing. What makes it safe:
 //   - the slot in use is never written;
 //   - the record is erased first and its commit word written last, so that half an image is none;
-//   - an image counts only where record, hash and structure are all right, looked at anew each
-//   start;
+//   - an image counts only where record, hash and structure are all right, and where there is a key
+//     the signature and its counter, looked at anew each start;
 //   - a word that means "yes" is one that is not erased throughout, or (commit) one that is right
 //     throughout: whichever is the safe reading of a word that a cut of power left half written.
 //
@@ -18,39 +18,22 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+
+#include "hal/flash/counter.hpp"
+#include "hal/flash/flash_memory.hpp"
+#include "hal/signature/signed_image.hpp"
+#include "rt_core/image/view.hpp"
 
 namespace palpate::hal::flash {
 
-/// Flash as firmware reaches it: erased bytes are 0xff; a program unit is written once between two
-/// erasures.
-class FlashMemory {
- public:
-  FlashMemory() = default;
-  FlashMemory(const FlashMemory&) = delete;
-  FlashMemory& operator=(const FlashMemory&) = delete;
-  FlashMemory(FlashMemory&&) = delete;
-  FlashMemory& operator=(FlashMemory&&) = delete;
-
-  /// Erases one erase unit. @param offset  of its first byte
-  [[nodiscard]] virtual bool erase(std::uint32_t offset) noexcept = 0;
-  /// Writes whole program units that are erased.
-  [[nodiscard]] virtual bool program(std::uint32_t offset,
-                                     std::span<const std::byte> bytes) noexcept = 0;
-  /// All of it, mapped; the first byte on a 64-byte boundary.
-  [[nodiscard]] virtual std::span<const std::byte> bytes() const noexcept = 0;
-
- protected:
-  ~FlashMemory() = default;
-};
-
-inline constexpr std::size_t kProgramBytes = 32;  ///< one program unit, or several of them
-inline constexpr std::uint32_t kMaxTries = 3;     ///< starts that an image has to be confirmed in
+inline constexpr std::uint32_t kMaxTries = 3;  ///< starts that an image has to be confirmed in
 inline constexpr std::uint8_t kSlots = 2;
 inline constexpr std::uint8_t kNone = 0xff;  ///< no slot
 
 /// Both slots lie one after the other from the start of the flash: one erase unit of record, then
-/// the image.
+/// the image. Behind them lies the security counter.
 struct SlotLayout {
   std::uint32_t erase_bytes = 4096;  ///< of one erase unit: at least 256, a multiple of 64
   std::uint32_t image_units = 32;    ///< erase units for an image
@@ -60,6 +43,20 @@ struct SlotLayout {
   [[nodiscard]] constexpr std::uint32_t slot_bytes() const noexcept {
     return erase_bytes + capacity();
   }
+  [[nodiscard]] constexpr std::uint32_t flash_bytes() const noexcept {
+    return kSlots * slot_bytes() + kCounterUnits * erase_bytes;
+  }
+};
+
+/// What a device asks of an image beyond its being sound.
+struct SlotRules {
+  /// It is signed with the other half of this key, with a security counter that is not below the
+  /// greatest of the images that were confirmed. Absent: signatures are not looked at.
+  std::optional<signature::PublicKey> key;
+  /// Memory that an engine for the image may need; 0: the device has no engine.
+  std::uint64_t engine_memory_bytes = 0;
+  /// What it does need. Null where there is no engine.
+  std::size_t (*engine_bytes)(const ImageView& image) noexcept = nullptr;
 };
 
 enum class [[nodiscard]] UpdateStatus : std::uint8_t{
@@ -69,7 +66,10 @@ enum class [[nodiscard]] UpdateStatus : std::uint8_t{
     too_large,     ///< more bytes than the slot holds
     erase_failed,  ///< the flash refused
     write_failed,  ///< the flash refused
-    not_an_image   ///< what was written is no sound image
+    not_an_image,  ///< what was written is no sound image
+    not_signed,    ///< or not with the device's key
+    outdated,      ///< its security counter is below the device's
+    too_demanding  ///< an engine for it needs more memory than the device has
 };
 
 /// What is known of a slot.
@@ -78,25 +78,33 @@ struct SlotState {
   bool confirmed = false;
   std::uint32_t tries = 0;
   std::uint64_t sequence = 0;
-  std::span<const std::byte> image;  ///< empty where there is no whole one
+  std::uint64_t counter = 0;         ///< of its signature
+  std::span<const std::byte> image;  ///< empty where there is none that keeps the rules
+  std::span<const std::byte> file;   ///< as it was written: with its signature
 };
 
 class Slots {
  public:
-  /// The flash must outlive this and have room for both slots.
-  Slots(FlashMemory& flash, const SlotLayout& layout) noexcept : flash_(flash), layout_(layout) {}
+  /// The flash must outlive this and have SlotLayout::flash_bytes().
+  Slots(FlashMemory& flash, const SlotLayout& layout, const SlotRules& rules = {}) noexcept
+      : flash_(flash),
+        layout_(layout),
+        rules_(rules),
+        counter_(flash, kSlots * layout.slot_bytes(), layout.erase_bytes) {}
 
   /// Once at each start of the device: chooses the newest usable image and, where it is not
   /// confirmed yet, records that it is tried. @return the slot in use from now on, or kNone Cost:
   /// at most two passes over each image.
   std::uint8_t start() noexcept;
 
-  /// The self-test of the image in use has passed. False where there is none or the flash refused.
+  /// The self-test of the image in use has passed: from now on none with a lower security counter
+  /// is accepted. False where there is none or the flash refused.
   bool confirm() noexcept;
 
   [[nodiscard]] std::uint8_t active() const noexcept { return active_; }
 
-  /// Proves a slot's record and image. Cost: one pass of validate().
+  /// Proves a slot's record, image and signature. Cost: one pass of validate(), and of
+  /// is_signed_by() where there is a key.
   [[nodiscard]] SlotState state(std::uint8_t slot) const noexcept;
 
   /// Erases a slot for an update. Aborts one that is under way.
@@ -118,10 +126,16 @@ class Slots {
   [[nodiscard]] std::span<const std::byte> record_of(std::uint8_t slot) const noexcept;
   [[nodiscard]] std::uint64_t newest_sequence() const noexcept;
   UpdateStatus flush() noexcept;
+  /// Whether the device may use what a file holds.
+  UpdateStatus judge(const signature::Contents& contents) const noexcept;
+  [[nodiscard]] bool raise_counter() noexcept;
 
   FlashMemory& flash_;
   SlotLayout layout_;
+  SlotRules rules_;
+  Counter counter_;
   std::uint8_t active_ = kNone;
+  std::uint64_t active_counter_ = 0;  ///< of its signature
   std::uint8_t updating_ = kNone;
   std::uint32_t written_ = 0;  ///< bytes of the update taken so far, with those in the buffer
   std::size_t buffered_ = 0;

@@ -60,6 +60,7 @@ std::optional<DeviceProblem> HostDriver::bring_up(Transport& transport) {
   if (auto problem = read_descriptor(transport, PacketType::capabilities, 0, capabilities_)) {
     return problem;
   }
+  if (auto problem = check_image(transport)) return problem;
   std::array<Joint, kMaxJoints> joints{};
   for (std::uint8_t i = 0; i < capabilities_.joints; ++i) {
     if (auto problem = read_descriptor(transport, PacketType::joint, i, joints[i])) return problem;
@@ -70,6 +71,19 @@ std::optional<DeviceProblem> HostDriver::bring_up(Transport& transport) {
   }
   chain_ = SerialChain(std::span(joints).first(capabilities_.joints));
   return std::nullopt;
+}
+
+std::optional<DeviceProblem> HostDriver::check_image(Transport& transport) const {
+  if (images_.empty() || capabilities_.slots == 0) return std::nullopt;
+  ImageIdentity held;
+  if (auto problem = read_descriptor(transport, PacketType::image_identity, 0, held)) {
+    return problem;
+  }
+  const bool is_known =
+      std::find(images_.begin(), images_.end(), held.content_sha256) != images_.end();
+  if (held.active_slot == kNoSlot || is_known) return std::nullopt;
+  return DeviceProblem{"image identity", "the device uses an image that is not of this scene",
+                       "give it one of the scene's: palpate flash IMAGE --device usb"};
 }
 
 hal::Capabilities HostDriver::capabilities() const noexcept {

@@ -2,7 +2,11 @@
 // The driver of devices that speak the open protocol (docs/PROTOCOL.md).
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "hal/protocol/host_end.hpp"
 #include "hal/protocol/packets.hpp"
@@ -16,8 +20,15 @@ template <class Descriptor>
 [[nodiscard]] std::optional<DeviceProblem> read_descriptor(Transport& transport, PacketType type,
                                                            std::uint8_t index, Descriptor& out);
 
+/// An image's content_sha256 (docs/FORMAT.md).
+using ImageHash = std::array<std::uint8_t, 32>;
+
 class HostDriver final : public Driver {
  public:
+  /// @param images  of the scene: a device that uses another one is refused at bring_up(), for what
+  /// it computes by itself would be of other bodies. One that holds none is not. Empty: not asked.
+  explicit HostDriver(std::vector<ImageHash> images = {}) : images_(std::move(images)) {}
+
   [[nodiscard]] std::optional<DeviceProblem> bring_up(Transport& transport) override;
   [[nodiscard]] hal::Capabilities capabilities() const noexcept override;
   [[nodiscard]] std::optional<DeviceProblem> begin(Transport& transport) override;
@@ -34,6 +45,9 @@ class HostDriver final : public Driver {
   [[nodiscard]] const LinkCounters& counters() const noexcept { return end_.counters(); }
 
  private:
+  [[nodiscard]] std::optional<DeviceProblem> check_image(Transport& transport) const;
+
+  std::vector<ImageHash> images_;
   Capabilities capabilities_;
   SerialChain chain_;
   HostEnd end_{capabilities_};

@@ -3,6 +3,7 @@
 
 #include "hal/protocol/bytes.hpp"
 #include "hal/protocol/crc32.hpp"
+#include "hal/text_table.hpp"
 
 namespace palpate::hal::protocol {
 namespace {
@@ -133,25 +134,15 @@ bool is_in_range(const Capabilities& c) noexcept {
 }  // namespace
 
 const char* describe(PacketError error) noexcept {
-  switch (error) {
-    case PacketError::none:
-      return "sound";
-    case PacketError::size:
-      return "wrong size";
-    case PacketError::magic:
-      return "not a packet of this protocol";
-    case PacketError::version:
-      return "another version of the protocol";
-    case PacketError::type:
-      return "another type of packet";
-    case PacketError::crc:
-      return "damaged (CRC)";
-    case PacketError::reserved:
-      return "a reserved byte is not zero";
-    case PacketError::range:
-      return "a field is out of range";
-  }
-  return "unknown";
+  return text_in<PacketError>({{PacketError::none, "sound"},
+                               {PacketError::size, "wrong size"},
+                               {PacketError::magic, "not a packet of this protocol"},
+                               {PacketError::version, "another version of the protocol"},
+                               {PacketError::type, "another type of packet"},
+                               {PacketError::crc, "damaged (CRC)"},
+                               {PacketError::reserved, "a reserved byte is not zero"},
+                               {PacketError::range, "a field is out of range"}},
+                              error, "unknown");
 }
 
 Packet encode(const State& s) noexcept {

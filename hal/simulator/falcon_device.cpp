@@ -38,6 +38,7 @@ Wrench wrench_of(const MotorValues& motors, const Vec3d& position_m) {
 
 FalconDevice::FalconDevice(FalconDeviceOptions options)
     : options_(std::move(options)),
+      descriptors_(falcon_descriptors(options_.serial)),
       hand_(options_.hand, kStep_s),
       processor_(options_.firmware_runs ? Processor::firmware : Processor::off) {}
 
@@ -57,6 +58,7 @@ void FalconDevice::advance_to(std::uint64_t now_ns) {
 std::uint64_t FalconDevice::next_event_ns() const { return next_tick_ns_; }
 
 IoResult FalconDevice::control_in(const ControlRequest& request, std::span<std::byte> out) {
+  if (is_standard(request)) return standard_in(descriptors_, request, out);
   if (request.type != kFtdiIn || out.empty() ||
       request.request != static_cast<std::uint8_t>(FtdiRequest::get_latency)) {
     return {IoStatus::stalled};
@@ -67,6 +69,7 @@ IoResult FalconDevice::control_in(const ControlRequest& request, std::span<std::
 
 IoResult FalconDevice::control_out(const ControlRequest& request,
                                    std::span<const std::byte> /*data*/) {
+  if (is_standard(request)) return standard_out(request);
   if (request.type != kFtdiOut) return {IoStatus::stalled};
   switch (FtdiRequest{request.request}) {
     case FtdiRequest::purge:

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <string>
 #include <vector>
 
 #include "hal/falcon/ftdi.hpp"
@@ -24,12 +25,14 @@ struct FalconDeviceOptions {
   int bad_uploads = 0;             ///< uploads with one byte of the echo changed
   bool runs_what_it_got = true;    ///< false: the uploaded bytes do not answer
   bool ignores_latency = false;    ///< the bridge keeps 16 ms whatever it is told
+  std::string serial = "SIM0001";
 };
 
 class FalconDevice final : public SimulatedDevice {
  public:
   explicit FalconDevice(FalconDeviceOptions options);
 
+  [[nodiscard]] const UsbDescriptors& descriptors() const override { return descriptors_; }
   void advance_to(std::uint64_t now_ns) override;
   [[nodiscard]] std::uint64_t next_event_ns() const override;
   IoResult control_in(const ControlRequest& request, std::span<std::byte> out) override;
@@ -60,6 +63,7 @@ class FalconDevice final : public SimulatedDevice {
   [[nodiscard]] bool is_homed() const noexcept;
 
   FalconDeviceOptions options_;
+  UsbDescriptors descriptors_;
   mock::Hand hand_;
   Processor processor_;
   falcon::Baud baud_ = falcon::Baud::b9600;

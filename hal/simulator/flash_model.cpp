@@ -4,14 +4,14 @@
 namespace palpate::hal::simulator {
 namespace {
 
-constexpr std::byte kErased{0xff};
+using flash::kErased;
 constexpr std::size_t kAlignment = 64;
 
 }  // namespace
 
 FlashModel::FlashModel(const flash::SlotLayout& layout, std::uint64_t seed)
     : layout_(layout),
-      size_(std::size_t{flash::kSlots} * layout.slot_bytes()),
+      size_(layout.flash_bytes()),
       memory_(size_ + kAlignment, kErased),
       written_(size_, false),
       random_(seed) {
@@ -59,7 +59,8 @@ bool FlashModel::program(std::uint32_t offset, std::span<const std::byte> bytes)
     std::byte& b = memory_[aligned_ + at];
     // Writing clears bits; the byte under way keeps some of them.
     b &= whole ? bytes[i] : bytes[i] | static_cast<std::byte>(random() & 0xff);
-    written_[at] = true;
+    // One that kept all of them cannot be told from one that was never begun.
+    written_[at] = whole || b != kErased;
     if (!whole) return false;
   }
   return true;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "rt_core/image/view.hpp"
+#include "rt_core/palpate_rt.hpp"
 
 namespace palpate::hal::simulator {
 namespace {
@@ -14,18 +15,7 @@ namespace {
 using namespace protocol;
 
 constexpr double kMicro = 1e-6;
-
-/// Configuration with one interface, the DFU one, in two alternate settings.
-constexpr std::array<std::uint8_t, 36> kUpdateDescriptors{
-    // clang-format off
-    9, 2, 36, 0, 1, 1, 0, 0x80, 50,
-    9, 4, 0, 0, 0, flash::kDfuClass, flash::kDfuSubclass, flash::kDfuModeProtocol, 0,
-    9, 4, 0, 1, 0, flash::kDfuClass, flash::kDfuSubclass, flash::kDfuModeProtocol, 0,
-    9, flash::kFunctionalDescriptorType,
-    flash::kCanDownload | flash::kCanUpload | flash::kManifestationTolerant,
-    0, 0, flash::DfuDevice::kTransferBytes & 0xff, flash::DfuDevice::kTransferBytes >> 8, 0x10, 1,
-    // clang-format on
-};
+constexpr std::uint16_t kUpdateInterface = 1;
 
 std::int32_t nanometres(double m) { return static_cast<std::int32_t>(std::lround(1e9 * m)); }
 std::int32_t quaternion_unit(double c) {
@@ -33,6 +23,13 @@ std::int32_t quaternion_unit(double c) {
 }
 Vec3d from_micro(const std::array<std::int32_t, 3>& v) {
   return {kMicro * v[0], kMicro * v[1], kMicro * v[2]};
+}
+
+/// Of an engine for two bodies of an image, with the default limits.
+std::size_t engine_bytes(const ImageView& image) noexcept {
+  const std::array bodies{image, image};
+  const std::array pairs{BodyPair{.a = 0, .b = 1}};
+  return required_bytes({.bodies = bodies, .pairs = pairs, .tool = 0}, Limits{});
 }
 
 IoResult give(const Packet& packet, std::span<std::byte> out) {
@@ -55,6 +52,7 @@ protocol::Capabilities OpenDeviceOptions::default_capabilities() noexcept {
 
 OpenDevice::OpenDevice(OpenDeviceOptions options)
     : options_(std::move(options)),
+      descriptors_(open_device_descriptors(options_.serial, options_.flash != nullptr)),
       hand_(options_.hand, 1.0 / options_.capabilities.rate_Hz),
       end_(options_.capabilities),
       period_ns_(1'000'000'000 / options_.capabilities.rate_Hz) {
@@ -92,6 +90,14 @@ void OpenDevice::period(std::uint64_t now_ns) {
   if (!silent_) ready_ = encode(state);
 }
 
+flash::SlotRules OpenDevice::rules() const noexcept {
+  flash::SlotRules rules;
+  rules.key = options_.key;
+  rules.engine_memory_bytes = options_.capabilities.engine_memory_bytes;
+  if (rules.engine_memory_bytes > 0) rules.engine_bytes = engine_bytes;
+  return rules;
+}
+
 ImageIdentity OpenDevice::identity() const {
   ImageIdentity identity;
   if (!slots_ || slots_->active() == flash::kNone) return identity;
@@ -111,16 +117,8 @@ ImageIdentity OpenDevice::identity() const {
 IoResult OpenDevice::control_in(const ControlRequest& request, std::span<std::byte> out) {
   if (request.type == flash::kDfuIn) return update(request, {}, out);
   if (request.type == kVendorIn) return vendor_in(request, out);
-  constexpr ControlRequest kGetConfiguration{0x80, 0x06, 0x0200, 0};
-  const bool is_configuration = request.type == kGetConfiguration.type &&
-                                request.request == kGetConfiguration.request &&
-                                request.value == kGetConfiguration.value;
-  if (!is_configuration || !dfu_) return {IoStatus::stalled};
-  const std::size_t length = std::min(out.size(), kUpdateDescriptors.size());
-  std::transform(kUpdateDescriptors.begin(),
-                 kUpdateDescriptors.begin() + static_cast<std::ptrdiff_t>(length), out.begin(),
-                 [](std::uint8_t b) { return std::byte{b}; });
-  return {IoStatus::ok, length};
+  if (is_standard(request)) return standard_in(descriptors_, request, out);
+  return {IoStatus::stalled};
 }
 
 IoResult OpenDevice::vendor_in(const ControlRequest& request, std::span<std::byte> out) {
@@ -138,13 +136,13 @@ IoResult OpenDevice::vendor_in(const ControlRequest& request, std::span<std::byt
 IoResult OpenDevice::control_out(const ControlRequest& request, std::span<const std::byte> data) {
   if (request.type == flash::kDfuOut) return update(request, data, {});
   if (request.type == kVendorOut) return vendor_out(request);
-  constexpr std::uint8_t kSetInterface = 0x0b;
-  if (request.type != 0x01 || request.request != kSetInterface || !dfu_ ||
-      request.value >= flash::kSlots) {
-    return {IoStatus::stalled};
+  constexpr ControlRequest kChooseSlot{0x01, 0x0b, 0, kUpdateInterface};
+  if (request.type == kChooseSlot.type && request.request == kChooseSlot.request &&
+      request.index == kChooseSlot.index && dfu_ && request.value < flash::kSlots) {
+    dfu_->select(static_cast<std::uint8_t>(request.value));
+    return {};
   }
-  dfu_->select(static_cast<std::uint8_t>(request.value));
-  return {};
+  return is_standard(request) ? standard_out(request) : IoResult{IoStatus::stalled};
 }
 
 IoResult OpenDevice::vendor_out(const ControlRequest& request) {
@@ -185,7 +183,7 @@ void OpenDevice::bus_reset() {
 void OpenDevice::restart() {
   bus_reset();
   if (options_.flash == nullptr) return;
-  slots_.emplace(*options_.flash, options_.layout);
+  slots_.emplace(*options_.flash, options_.layout, rules());
   dfu_.emplace(*slots_);
   const bool holds_image = slots_->start() != flash::kNone && slots_->confirm();
   end_.set_health(holds_image ? kHealthy : kNoImage);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "hal/flash/dfu_device.hpp"
 #include "hal/mock/faults.hpp"
@@ -20,6 +21,9 @@ struct OpenDeviceOptions {
   /// Its flash, which outlives it; null: it holds no images.
   flash::FlashMemory* flash = nullptr;
   flash::SlotLayout layout;
+  /// The public key that images must be signed for; absent: none
+  std::optional<signature::PublicKey> key;
+  std::string serial = "SIM0001";
   /// stuck and drift, from its first period on
   mock::Faults sensor_faults;
 
@@ -30,6 +34,7 @@ class OpenDevice : public SimulatedDevice {
  public:
   explicit OpenDevice(OpenDeviceOptions options);
 
+  [[nodiscard]] const UsbDescriptors& descriptors() const override { return descriptors_; }
   void advance_to(std::uint64_t now_ns) override;
   [[nodiscard]] std::uint64_t next_event_ns() const override { return next_ns_; }
   IoResult control_in(const ControlRequest& request, std::span<std::byte> out) override;
@@ -56,6 +61,7 @@ class OpenDevice : public SimulatedDevice {
 
  private:
   void period(std::uint64_t now_ns);
+  [[nodiscard]] flash::SlotRules rules() const noexcept;
   [[nodiscard]] protocol::ImageIdentity identity() const;
   IoResult vendor_in(const ControlRequest& request, std::span<std::byte> out);
   IoResult vendor_out(const ControlRequest& request);
@@ -63,6 +69,7 @@ class OpenDevice : public SimulatedDevice {
                   std::span<std::byte> out);
 
   OpenDeviceOptions options_;
+  UsbDescriptors descriptors_;
   mock::Hand hand_;
   protocol::DeviceEnd end_;
   std::uint64_t period_ns_;

@@ -28,7 +28,7 @@ class Port final : public Transport {
   /// Device and clock must outlive this.
   Port(SimulatedDevice& device, Clock& clock, PortFaults faults = {});
 
-  [[nodiscard]] std::uint8_t interface_number() const noexcept override { return 0; }
+  [[nodiscard]] std::uint8_t interface_number() const noexcept override { return interface_; }
   IoResult control_in(const ControlRequest& request, std::span<std::byte> out,
                       std::uint32_t timeout_ms) override;
   IoResult control_out(const ControlRequest& request, std::span<const std::byte> data,
@@ -41,6 +41,9 @@ class Port final : public Transport {
   [[nodiscard]] std::size_t pending() const noexcept override { return pending_; }
   IoStatus wait(std::uint64_t until_ns, StreamSink& sink) override;
   void end_stream() noexcept override;
+
+  /// Another interface of the device from now on; 0 at first.
+  void claim(std::uint8_t interface) noexcept { interface_ = interface; }
 
   /// OUT transfers neither arrive nor complete any more, or do again.
   void hold_out(bool hold) noexcept { hold_out_ = hold; }
@@ -59,6 +62,7 @@ class Port final : public Transport {
   Clock& clock_;
   PortFaults faults_;
   std::uint64_t start_ns_;
+  std::uint8_t interface_ = 0;
   bool lost_ = false;
   bool hold_out_ = false;
   std::size_t pending_ = 0;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "hal/simulator/descriptors.hpp"
 #include "hal/transport/transport.hpp"
 
 namespace palpate::hal::simulator {
@@ -18,6 +19,9 @@ class SimulatedDevice {
   SimulatedDevice& operator=(const SimulatedDevice&) = delete;
   SimulatedDevice(SimulatedDevice&&) = delete;
   SimulatedDevice& operator=(SimulatedDevice&&) = delete;
+
+  /// What it says about itself, for as long as it lives.
+  [[nodiscard]] virtual const UsbDescriptors& descriptors() const = 0;
 
   /// Lives through the time up to and including now. Time never runs backwards.
   virtual void advance_to(std::uint64_t now_ns) = 0;

@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/transport/transport.hpp"
 
+#include "hal/text_table.hpp"
+
 namespace palpate::hal {
 
 const char* describe(IoStatus status) noexcept {
-  switch (status) {
-    case IoStatus::ok:
-      return "done";
-    case IoStatus::timed_out:
-      return "no answer in time";
-    case IoStatus::stalled:
-      return "refused by the device";
-    case IoStatus::lost:
-      return "the device is gone";
-    case IoStatus::failed:
-      return "the transfer failed";
-  }
-  return "unknown";
+  return text_in<IoStatus>({{IoStatus::ok, "done"},
+                            {IoStatus::timed_out, "no answer in time"},
+                            {IoStatus::stalled, "refused by the device"},
+                            {IoStatus::lost, "the device is gone"},
+                            {IoStatus::failed, "the transfer failed"}},
+                           status, "unknown");
 }
 
 }  // namespace palpate::hal

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/usb/find.hpp"
 
+#include <algorithm>
+#include <set>
 #include <utility>
 
 #include "hal/protocol/host_driver.hpp"
+#include "hal/text_table.hpp"
 #include "hal/usb/interfaces.hpp"
 #include "hal/usb/libusb_transport.hpp"
 
@@ -11,8 +14,7 @@ namespace palpate::hal::usb {
 namespace {
 
 constexpr const char* kRuleMend =
-    "install config/udev/70-palpate.rules as /etc/udev/rules.d/70-palpate.rules, then "
-    "'sudo udevadm control --reload' and plug the device in again";
+    "'sudo tools/setup/host' installs the udev rule; then plug it in again";
 
 struct Candidate {
   libusb_device* device = nullptr;
@@ -41,11 +43,22 @@ DeviceProblem problem_of(int error) {
   }
 }
 
+std::string joined(const std::set<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
 /// An open device with its interface claimed.
 struct Claimed {
   Handle handle;
   std::string serial;
   std::optional<DeviceProblem> problem;
+};
+
+struct Opened {
+  Claimed claimed;
+  Interface interface;
 };
 
 Claimed claim(const Candidate& candidate) {
@@ -82,7 +95,7 @@ FoundDevice describe(Kind kind, const Context& context, const Candidate& candida
                            : ask(kind, context, std::move(claimed), candidate.interface);
   found.ready = !problem;
   if (problem) {
-    found.problem = problem->cause;
+    found.problem = problem->phase + ": " + problem->cause;
     found.mend = problem->mend;
   }
   return found;
@@ -91,15 +104,9 @@ FoundDevice describe(Kind kind, const Context& context, const Candidate& candida
 }  // namespace
 
 std::string_view name(Kind kind) noexcept {
-  switch (kind) {
-    case Kind::open_protocol:
-      return "usb";
-    case Kind::falcon:
-      return "falcon";
-    case Kind::update:
-      return "update";
-  }
-  return "unknown";
+  return text_in<Kind>(
+      {{Kind::open_protocol, "usb"}, {Kind::falcon, "falcon"}, {Kind::update, "update"}}, kind,
+      "unknown");
 }
 
 std::vector<FoundDevice> find_devices() {
@@ -111,6 +118,9 @@ std::vector<FoundDevice> find_devices() {
       if (const auto c = candidate_of(kind, device)) found.push_back(describe(kind, context, *c));
     }
   }
+  // The bus lists them in any order.
+  std::sort(found.begin(), found.end(),
+            [](const FoundDevice& a, const FoundDevice& b) { return a.path < b.path; });
   return found;
 }
 
@@ -119,33 +129,38 @@ std::variant<std::unique_ptr<Transport>, DeviceProblem> open_transport(Kind kind
   Context context = make_context();
   if (!context) return DeviceProblem{"USB", "libusb cannot be used on this host", "see 'lsusb'"};
   const DeviceList list(context.get());
-  std::optional<Claimed> chosen;
-  Interface interface;
+  std::vector<Opened> meant;
   std::optional<DeviceProblem> unopened;
+  std::set<std::string> serials;
   for (libusb_device* device : list) {
     const auto candidate = candidate_of(kind, device);
     if (!candidate) continue;
     Claimed claimed = claim(*candidate);
-    if (!serial.empty() && claimed.serial != serial) {
+    if (!claimed.serial.empty()) serials.insert(claimed.serial);
+    if (serial.empty() || claimed.serial == serial) {
+      meant.push_back({std::move(claimed), candidate->interface});
+    } else if (!claimed.handle) {
       // One that cannot be opened cannot say its serial number: it may be the one that is meant.
-      if (!claimed.handle) unopened = claimed.problem;
-      continue;
+      unopened = claimed.problem;
     }
-    if (chosen) {
-      return DeviceProblem{"find", "more than one such device is connected",
-                           "name one by its serial number; 'palpate devices' lists them"};
-    }
-    chosen = std::move(claimed);
-    interface = candidate->interface;
   }
-  if (!chosen && unopened) return *unopened;
-  if (!chosen) {
+  if (meant.size() > 1) {
+    return DeviceProblem{"find", "more than one such device is connected",
+                         "name one by its serial number: " + joined(serials)};
+  }
+  if (meant.empty() && unopened) return *unopened;
+  if (meant.empty() && !serials.empty()) {
+    return DeviceProblem{"find", "no device with this serial number is connected",
+                         "connected are: " + joined(serials)};
+  }
+  if (meant.empty()) {
     return DeviceProblem{"find", "no such device is connected",
                          "plug it in and switch it on; 'palpate devices' lists what is there"};
   }
-  if (chosen->problem) return *chosen->problem;
-  return std::make_unique<LibusbTransport>(std::move(context), std::move(chosen->handle),
-                                           interface);
+  Opened& chosen = meant.front();
+  if (chosen.claimed.problem) return *chosen.claimed.problem;
+  return std::make_unique<LibusbTransport>(std::move(context), std::move(chosen.claimed.handle),
+                                           chosen.interface);
 }
 
 }  // namespace palpate::hal::usb

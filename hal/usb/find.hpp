@@ -28,11 +28,11 @@ struct FoundDevice {
   std::string serial;  ///< empty where it has none or cannot be asked
   std::string path;    ///< "2-1.4", as in /sys/bus/usb/devices
   bool ready = false;
-  std::string problem;  ///< empty where ready
+  std::string problem;  ///< "phase: likely cause"; empty where ready
   std::string mend;     ///< likewise
 };
 
-/// Every device with an interface for the exchange. Opens and closes each. May block.
+/// Every device with an interface for the exchange, by path. Opens and closes each. May block.
 [[nodiscard]] std::vector<FoundDevice> find_devices();
 
 /// Opens the device's interface of a kind. The problem where there is none, more than one, or it

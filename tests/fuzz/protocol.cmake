@@ -19,4 +19,7 @@ if(PALPATE_FUZZ)
     "${PROJECT_SOURCE_DIR}/hal/transport/transport.cpp")
   hal_fuzz(falcon_fuzz fuzz/falcon_fuzz.cpp "${PROJECT_SOURCE_DIR}/hal/falcon/messages.cpp"
     "${PROJECT_SOURCE_DIR}/hal/falcon/ftdi.cpp" "${PROJECT_SOURCE_DIR}/hal/falcon/kinematics.cpp")
+  hal_fuzz(usbip_fuzz fuzz/usbip_fuzz.cpp "${PROJECT_SOURCE_DIR}/hal/usbip/messages.cpp"
+    "${PROJECT_SOURCE_DIR}/hal/usbip/session.cpp" "${PROJECT_SOURCE_DIR}/hal/simulator/descriptors.cpp")
+  target_link_libraries(usbip_fuzz PRIVATE palpate_hal)
 endif()

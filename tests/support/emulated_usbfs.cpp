@@ -15,81 +15,45 @@
 #include <cstdarg>
 #include <cstring>
 
-#include "hal/flash/dfu.hpp"
-#include "hal/flash/dfu_device.hpp"
-#include "hal/protocol/packets.hpp"
-
 namespace palpate::hal::test {
 namespace {
 
-std::atomic<EmulatedUsbfs*> g_usbfs{nullptr};
+std::array<std::atomic<EmulatedUsbfs*>, EmulatedUsbfs::kMost> g_usbfs{};
 
 constexpr std::uint64_t kLookEvery_ns = 100'000;
 constexpr std::size_t kSetupBytes = 8;
 constexpr int kHardwarePriority = 90;
-constexpr int kHighSpeed = 3;
-constexpr std::size_t kDeviceDescriptorBytes = 18;
 
-std::vector<std::uint8_t> with_device(std::uint16_t vendor, std::uint16_t product,
-                                      std::vector<std::uint8_t> configuration) {
-  const auto low = [](std::uint16_t v) { return static_cast<std::uint8_t>(v & 0xff); };
-  const auto high = [](std::uint16_t v) { return static_cast<std::uint8_t>(v >> 8); };
-  const auto total = static_cast<std::uint16_t>(configuration.size());
-  configuration[2] = low(total);
-  configuration[3] = high(total);
-  const std::array<std::uint8_t, kDeviceDescriptorBytes> device{
-      kDeviceDescriptorBytes, 1, 0x00, 0x02, 0, 0, 0, 64, low(vendor), high(vendor), low(product),
-      high(product),          0, 1,    0,    0, 0, 1};
-  std::vector<std::uint8_t> all;
-  for (const std::uint8_t b : device) all.push_back(b);
-  for (const std::uint8_t b : configuration) all.push_back(b);
+/// As usbfs gives them to who reads the file.
+std::vector<std::uint8_t> file_of(const simulator::UsbDescriptors& descriptors) {
+  std::vector<std::uint8_t> all = descriptors.device;
+  all.insert(all.end(), descriptors.configuration.begin(), descriptors.configuration.end());
   return all;
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> open_device_descriptors() {
-  using namespace flash;
-  constexpr std::uint16_t kTransfer = DfuDevice::kTransferBytes;
-  return with_device(0x1209, 0x0001,
-                     // clang-format off
-      {9, 2, 0, 0, 2, 1, 0, 0x80, 50,
-       9, 4, 0, 0, 2, protocol::kInterfaceClass, protocol::kInterfaceSubclass, protocol::kInterfaceProtocol, 0,
-       7, 5, 0x81, 3, 64, 0, 2,
-       7, 5, 0x01, 3, 64, 0, 2,
-       9, 4, 1, 0, 0, kDfuClass, kDfuSubclass, kDfuModeProtocol, 0,
-       9, 4, 1, 1, 0, kDfuClass, kDfuSubclass, kDfuModeProtocol, 0,
-       9, kFunctionalDescriptorType, kCanDownload | kCanUpload | kManifestationTolerant, 0, 0,
-       kTransfer & 0xff, kTransfer >> 8, 0x10, 1});
-  // clang-format on
-}
-
-std::vector<std::uint8_t> falcon_descriptors() {
-  return with_device(0x0403, 0xcb48,
-                     // clang-format off
-                     {9, 2, 0, 0, 1, 1, 0, 0x80, 50,
-                      9, 4, 0, 0, 2, 0xff, 0xff, 0xff, 0,
-                      7, 5, 0x81, 2, 64, 0, 0,
-                      7, 5, 0x02, 2, 64, 0, 0});
-  // clang-format on
-}
-
-EmulatedUsbfs::EmulatedUsbfs(simulator::SimulatedDevice& device,
-                             std::vector<std::uint8_t> descriptors)
-    : device_(device), descriptors_(std::move(descriptors)) {
+EmulatedUsbfs::EmulatedUsbfs(simulator::SimulatedDevice& device)
+    : device_(device), descriptors_(file_of(device.descriptors())) {
   if (::pipe(pipe_) != 0) std::abort();
   const int page = static_cast<int>(::sysconf(_SC_PAGESIZE));
   ::fcntl(pipe_[1], F_SETPIPE_SZ, page);
   ::fcntl(pipe_[0], F_SETFL, O_NONBLOCK);
   signal(false);
-  g_usbfs = this;
+  for (auto& place : g_usbfs) {
+    EmulatedUsbfs* nobody = nullptr;
+    if (place.compare_exchange_strong(nobody, this)) break;
+  }
   thread_ = std::thread([this] { live(); });
 }
 
 EmulatedUsbfs::~EmulatedUsbfs() {
   stopping_ = true;
   thread_.join();
-  g_usbfs = nullptr;
+  for (auto& place : g_usbfs) {
+    EmulatedUsbfs* me = this;
+    if (place.compare_exchange_strong(me, nullptr)) break;
+  }
   ::close(pipe_[1]);
   if (pipe_[0] >= 0) ::close(pipe_[0]);
 }
@@ -140,6 +104,21 @@ void EmulatedUsbfs::serve() {
 
 void EmulatedUsbfs::unplug() {
   const std::lock_guard lock(mutex_);
+  pull_plug();
+}
+
+void EmulatedUsbfs::unplug_after(int submissions) {
+  const std::lock_guard lock(mutex_);
+  submissions_left_ = submissions;
+}
+
+void EmulatedUsbfs::refuse_claims(int error) {
+  const std::lock_guard lock(mutex_);
+  claim_result_ = error;
+}
+
+void EmulatedUsbfs::pull_plug() {
+  if (unplugged_) return;
   unplugged_ = true;
   device_.bus_reset();
   for (auto* queue : {&in_, &out_, &held_}) {
@@ -186,7 +165,9 @@ int EmulatedUsbfs::halts_cleared() {
 }
 
 int EmulatedUsbfs::submit(usbdevfs_urb* urb) {
+  if (submissions_left_ == 0) pull_plug();
   if (unplugged_) return -ENODEV;
+  if (submissions_left_ > 0) --submissions_left_;
   urb->status = -EINPROGRESS;
   if (urb->type == USBDEVFS_URB_TYPE_CONTROL) {
     control(urb);
@@ -214,15 +195,8 @@ void EmulatedUsbfs::control(usbdevfs_urb* urb) {
   const std::span<std::byte> data(bytes + kSetupBytes, word(6));
   const bool is_in = (request.type & 0x80) != 0;
   device_.advance_to(clock_.now_ns());
-  IoResult result;
-  if (is_in && request.request == 6 && request.type == 0x80 && request.value == 0x0200) {
-    // The configuration descriptor is the bus's, not the model's.
-    const std::size_t length = std::min(data.size(), descriptors_.size() - kDeviceDescriptorBytes);
-    std::memcpy(data.data(), descriptors_.data() + kDeviceDescriptorBytes, length);
-    result.bytes = length;
-  } else {
-    result = is_in ? device_.control_in(request, data) : device_.control_out(request, data);
-  }
+  const IoResult result =
+      is_in ? device_.control_in(request, data) : device_.control_out(request, data);
   const std::size_t moved = is_in ? result.bytes : data.size();
   complete(urb, result.ok() ? 0 : -EPIPE, result.ok() ? static_cast<int>(moved) : 0);
 }
@@ -269,7 +243,7 @@ int EmulatedUsbfs::on_ioctl(unsigned long request, void* argument) {
       *static_cast<usbdevfs_connectinfo*>(argument) = {2, 0};
       return 0;
     case USBDEVFS_GET_SPEED:
-      return kHighSpeed;
+      return static_cast<int>(device_.descriptors().speed);
     case USBDEVFS_GET_CAPABILITIES:
       *static_cast<std::uint32_t*>(argument) = USBDEVFS_CAP_ZERO_PACKET |
                                                USBDEVFS_CAP_NO_PACKET_SIZE_LIM |
@@ -297,8 +271,9 @@ int EmulatedUsbfs::on_ioctl(unsigned long request, void* argument) {
     case USBDEVFS_REAPURBNDELAY:
       return reap(static_cast<usbdevfs_urb**>(argument));
     case USBDEVFS_CLAIMINTERFACE:
-    case USBDEVFS_RELEASEINTERFACE:
     case USBDEVFS_DISCONNECT_CLAIM:
+      return unplugged_ ? -ENODEV : claim_result_;
+    case USBDEVFS_RELEASEINTERFACE:
       return unplugged_ ? -ENODEV : 0;
     default:
       return -ENOTTY;
@@ -320,8 +295,10 @@ long EmulatedUsbfs::on_seek(long offset) {
 }
 
 EmulatedUsbfs* usbfs_of(int fd) {
-  EmulatedUsbfs* usbfs = g_usbfs;
-  return usbfs != nullptr && usbfs->descriptor() == fd ? usbfs : nullptr;
+  for (EmulatedUsbfs* usbfs : g_usbfs) {
+    if (usbfs != nullptr && usbfs->descriptor() == fd) return usbfs;
+  }
+  return nullptr;
 }
 
 long with_errno(long result) {

@@ -25,16 +25,12 @@ struct usbdevfs_urb;
 
 namespace palpate::hal::test {
 
-/// Device and configuration descriptor of a device of the open protocol: interface 0 for the
-/// exchange with interrupt endpoints 0x81 and 0x01, interface 1 for updates.
-[[nodiscard]] std::vector<std::uint8_t> open_device_descriptors();
-/// The same of a Falcon: interface 0 with bulk endpoints 0x81 and 0x02.
-[[nodiscard]] std::vector<std::uint8_t> falcon_descriptors();
-
-/// One at a time. The device lives on a thread of its own, on the real clock.
+/// At most kMost at a time. The device lives on a thread of its own, on the real clock.
 class EmulatedUsbfs {
  public:
-  EmulatedUsbfs(simulator::SimulatedDevice& device, std::vector<std::uint8_t> descriptors);
+  static constexpr std::size_t kMost = 4;
+
+  explicit EmulatedUsbfs(simulator::SimulatedDevice& device);
   ~EmulatedUsbfs();
   EmulatedUsbfs(const EmulatedUsbfs&) = delete;
   EmulatedUsbfs& operator=(const EmulatedUsbfs&) = delete;
@@ -45,6 +41,10 @@ class EmulatedUsbfs {
   [[nodiscard]] int descriptor() const noexcept { return pipe_[1]; }
 
   void unplug();
+  /// The plug is pulled when one transfer more than these is submitted.
+  void unplug_after(int submissions);
+  /// Interfaces cannot be claimed: a negative errno.
+  void refuse_claims(int error);
   /// OUT transfers stay under way.
   void hold_out(bool hold);
   /// The next transfers of the endpoint end with a negative errno.
@@ -75,6 +75,7 @@ class EmulatedUsbfs {
   };
   void live();
   void serve();
+  void pull_plug();
   int submit(usbdevfs_urb* urb);
   int discard(usbdevfs_urb* urb);
   int reap(usbdevfs_urb** out);
@@ -94,6 +95,8 @@ class EmulatedUsbfs {
   bool hold_out_ = false;
   bool hold_control_ = false;
   bool unplugged_ = false;
+  int submissions_left_ = -1;  ///< until the plug is pulled; below 0: never
+  int claim_result_ = 0;
   int halts_cleared_ = 0;
   MonotonicClock clock_;
   std::atomic<bool> stopping_{false};

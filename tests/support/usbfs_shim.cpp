@@ -1,16 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated device of the open protocol for any program that uses libusb: to be preloaded.
-// Opening /dev/bus/usb/001/002 reaches it; that there is such a device must come from elsewhere
-// (umockdev). Its flash is the file named by PALPATE_SHIM_FLASH.
+// Simulated devices of the open protocol for any program that uses libusb: to be preloaded. Opening
+// /dev/bus/usb/001/002 reaches the first one, 003 the second; that there are such devices must come
+// from elsewhere (umockdev). PALPATE_SHIM_DEVICES has a word for each, with colons between: the
+// file of its flash, or "denied" (nobody may open it), "busy" (another program has it), "version"
+// (it speaks another version of the protocol). PALPATE_SHIM_KEY may name a file with the 32 bytes
+// of the public key that images must be signed for.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/types.h>
 
+#include <cerrno>
 #include <cstdarg>
 #include <cstdlib>
-#include <cstring>
-#include <memory>
+#include <deque>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "emulated_usbfs.hpp"
 #include "hal/flash/file_flash.hpp"
@@ -19,16 +28,39 @@
 namespace palpate::hal::test {
 namespace {
 
-constexpr const char* kNode = "/dev/bus/usb/001/002";
+constexpr std::string_view kNodes = "/dev/bus/usb/001/00";
+constexpr int kFirstNode = 2;
+
+/// Says that it speaks another version of the protocol.
+class Foreigner final : public simulator::OpenDevice {
+ public:
+  using OpenDevice::OpenDevice;
+  IoResult control_in(const ControlRequest& request, std::span<std::byte> out) override {
+    const IoResult result = OpenDevice::control_in(request, out);
+    if (request.type == protocol::kVendorIn && result.bytes > 2) out[2] = std::byte{2};
+    return result;
+  }
+};
+
+/// The 32 bytes of the file named by PALPATE_SHIM_KEY; absent where none is named.
+std::optional<signature::PublicKey> key() {
+  const char* file = std::getenv("PALPATE_SHIM_KEY");
+  if (file == nullptr) return std::nullopt;
+  signature::PublicKey key{};
+  std::ifstream(file, std::ios::binary).read(reinterpret_cast<char*>(key.data()), key.size());
+  return key;
+}
 
 struct Shim {
-  explicit Shim(const char* flash_file)
-      : flash(flash_file, layout), model(options()), usbfs(model, open_device_descriptors()) {}
+  Shim(const std::string& flash_file, const std::string& serial)
+      : flash(flash_file, layout), model(options(serial)), usbfs(model) {}
 
-  simulator::OpenDeviceOptions options() {
+  simulator::OpenDeviceOptions options(const std::string& serial) {
     simulator::OpenDeviceOptions out;
     out.flash = &flash;
     out.layout = layout;
+    out.key = key();
+    out.serial = serial;
     // The hand presses 5 mm towards the scene's centre along x and back, each second.
     out.hand.rest.position_m = {0.0102, 0, 0};
     out.hand.script = {
@@ -44,13 +76,52 @@ struct Shim {
   EmulatedUsbfs usbfs;
 };
 
-/// Made when the device is opened first; lives as long as the process.
-Shim* shim() {
-  static const auto kShim = []() -> std::unique_ptr<Shim> {
-    const char* file = std::getenv("PALPATE_SHIM_FLASH");
-    return file == nullptr ? nullptr : std::make_unique<Shim>(file);
-  }();
-  return kShim.get();
+/// One that cannot be used.
+struct Unusable {
+  explicit Unusable(const std::string& serial, int claim_result) : model(options(serial)) {
+    usbfs.refuse_claims(claim_result);
+  }
+  static simulator::OpenDeviceOptions options(const std::string& serial) {
+    simulator::OpenDeviceOptions out;
+    out.serial = serial;
+    return out;
+  }
+  Foreigner model;
+  EmulatedUsbfs usbfs{model};
+};
+
+struct Bus {
+  std::deque<Shim> usable;
+  std::deque<Unusable> unusable;
+  std::vector<EmulatedUsbfs*> ports;  ///< null: nobody may open it
+};
+
+Bus make_bus() {
+  Bus bus;
+  const char* words = std::getenv("PALPATE_SHIM_DEVICES");
+  std::istringstream list(words == nullptr ? "" : words);
+  for (std::string word; std::getline(list, word, ':');) {
+    const std::string serial = "SIM" + std::to_string(bus.ports.size() + 1);
+    if (word == "denied") {
+      bus.ports.push_back(nullptr);
+    } else if (word == "busy" || word == "version") {
+      bus.ports.push_back(&bus.unusable.emplace_back(serial, word == "busy" ? -EBUSY : 0).usbfs);
+    } else {
+      bus.ports.push_back(&bus.usable.emplace_back(word, serial).usbfs);
+    }
+  }
+  return bus;
+}
+
+/// The descriptor of a node of ours, or a negative errno; absent where it is not ours. The devices
+/// are made when one is opened first, and live as long as the process.
+std::optional<int> open_node(std::string_view path) {
+  if (path.substr(0, kNodes.size()) != kNodes) return std::nullopt;
+  static const Bus kBus = make_bus();
+  const int index = std::atoi(path.substr(kNodes.size()).data()) - kFirstNode;
+  if (index < 0 || index >= static_cast<int>(kBus.ports.size())) return -ENODEV;
+  EmulatedUsbfs* port = kBus.ports[static_cast<std::size_t>(index)];
+  return port == nullptr ? -EACCES : port->descriptor();
 }
 
 template <class Function>
@@ -59,7 +130,7 @@ Function* next(const char* name) {
 }
 
 int open_file(const char* name, const char* path, int flags, va_list arguments) {
-  if (std::strcmp(path, kNode) == 0 && shim() != nullptr) return shim()->usbfs.descriptor();
+  if (const auto result = open_node(path)) return static_cast<int>(with_errno(*result));
   const mode_t mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(arguments, mode_t) : 0;
   return next<int(const char*, int, ...)>(name)(path, flags, mode);
 }

@@ -21,7 +21,7 @@ constexpr SlotLayout kLayout{512, 8};
 TEST(FileFlash, new_file_is_erased_and_of_full_size) {
   const TemporaryFolder folder;
   const FileFlash flash(folder.path() / "flash", kLayout);
-  EXPECT_EQ(flash.bytes().size(), 2 * kLayout.slot_bytes());
+  EXPECT_EQ(flash.bytes().size(), kLayout.flash_bytes());
   EXPECT_EQ(std::filesystem::file_size(folder.path() / "flash"), flash.bytes().size());
   for (const std::byte b : flash.bytes()) ASSERT_EQ(b, std::byte{0xff});
 }
@@ -51,9 +51,9 @@ TEST(FileFlash, what_is_not_erased_or_not_there_is_not_written) {
   EXPECT_TRUE(flash.program(64, unit));
   EXPECT_FALSE(flash.program(64, unit));
   EXPECT_FALSE(flash.program(7, unit));
-  EXPECT_FALSE(flash.program(2 * kLayout.slot_bytes(), unit));
+  EXPECT_FALSE(flash.program(kLayout.flash_bytes(), unit));
   EXPECT_FALSE(flash.erase(100));
-  EXPECT_FALSE(flash.erase(2 * kLayout.slot_bytes()));
+  EXPECT_FALSE(flash.erase(kLayout.flash_bytes()));
   EXPECT_TRUE(flash.erase(0));
   EXPECT_TRUE(flash.program(64, unit));
 }

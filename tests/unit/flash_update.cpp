@@ -39,6 +39,18 @@ OpenDeviceOptions with(FlashModel& flash) {
   return options;
 }
 
+constexpr std::uint8_t kUpdateInterface = 1;
+
+/// Through the device's interface for updates.
+std::optional<DeviceProblem> write(Port& port, std::uint8_t slot,
+                                   std::span<const std::byte> bytes) {
+  VirtualClock clock;
+  port.claim(kUpdateInterface);
+  auto problem = write_slot(port, clock, slot, bytes, [](const char*, double) {});
+  port.claim(0);
+  return problem;
+}
+
 /// A device on a port, updated as `palpate flash` does it.
 struct UpdateRig {
   explicit UpdateRig(simulator::PortFaults faults = {})
@@ -50,10 +62,7 @@ struct UpdateRig {
     if (auto bad = read_target(port, target)) return bad;
     const auto slot = choose_slot(target, bytes.size(), wanted);
     if (const auto* bad = std::get_if<DeviceProblem>(&slot)) return *bad;
-    if (auto bad = write_slot(port, clock, std::get<std::uint8_t>(slot), bytes,
-                              [](const char*, double) {})) {
-      return bad;
-    }
+    if (auto bad = write(port, std::get<std::uint8_t>(slot), bytes)) return bad;
     return restart(port);
   }
 
@@ -121,7 +130,7 @@ TEST(Update, image_is_written_read_back_and_used_after_the_restart) {
 TEST(Update, device_without_a_restart_keeps_its_image) {
   UpdateRig rig;
   ASSERT_FALSE(rig.update(image(1)));
-  ASSERT_FALSE(write_slot(rig.port, rig.clock, 1, image(2), [](const char*, double) {}));
+  ASSERT_FALSE(write(rig.port, 1, image(2)));
   EXPECT_EQ(rig.in_use(), hash_of(image(1)));
 }
 
@@ -204,11 +213,11 @@ TEST(Update, read_back_that_differs_keeps_the_device_from_switching) {
   {
     OpenDevice honest(with(flash));
     Port port(honest, clock);
-    ASSERT_FALSE(write_slot(port, clock, 0, image(1), [](const char*, double) {}));
+    ASSERT_FALSE(write(port, 0, image(1)));
   }
   Liar device(with(flash));
   Port port(device, clock);
-  const auto problem = write_slot(port, clock, 1, image(2), [](const char*, double) {});
+  const auto problem = write(port, 1, image(2));
   ASSERT_TRUE(problem);
   EXPECT_EQ(problem->cause, "the device holds something else than was written");
   device.restart();
@@ -223,8 +232,9 @@ TEST(Update, update_ends_a_session_and_its_force) {
   const ControlRequest begin{protocol::kVendorOut, 2, 1, 0};
   ASSERT_TRUE(rig.port.control_out(begin, {}, 0).ok());
   const std::vector<std::byte> block(64);
+  rig.port.claim(kUpdateInterface);
   ASSERT_TRUE(rig.port.select_alternate(1) == IoStatus::ok);
-  ASSERT_TRUE(rig.port.control_out({kDfuOut, 1, 0, 0}, block, 0).ok());
+  ASSERT_TRUE(rig.port.control_out({kDfuOut, 1, 0, 1}, block, 0).ok());
   EXPECT_EQ(rig.device.mode(), protocol::Mode::idle);
   EXPECT_EQ(restart(rig.port)->cause, "refused by the device");  // the session is still the host's
 }

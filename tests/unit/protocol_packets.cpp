@@ -133,6 +133,29 @@ TEST(Packets, every_change_of_one_byte_is_refused) {
   }
 }
 
+// All of them at once: the CRC is linear, so that a change goes unnoticed in one packet where it
+// does in all. Two changed bytes go unnoticed where each changes the checksum alike: 131 million
+// pairs.
+TEST(Packets, no_change_of_two_bytes_leaves_the_checksum_right) {
+  const Packet zero = with_crc({});
+  const auto effect_of = [&](std::size_t at, unsigned change) {
+    Packet changed = zero;
+    changed[at] ^= std::byte(change);
+    const Packet right = with_crc(changed);
+    const std::span<const std::byte> is(changed), should_be(right);
+    return get<std::uint32_t>(is, kPacketBytes - 4) ^
+           get<std::uint32_t>(should_be, kPacketBytes - 4);
+  };
+  std::vector<std::uint32_t> effects;
+  for (std::size_t at = 0; at < kPacketBytes; ++at) {
+    for (unsigned change = 1; change < 256; ++change) effects.push_back(effect_of(at, change));
+  }
+  std::sort(effects.begin(), effects.end());
+  EXPECT_NE(effects.front(), 0u);
+  EXPECT_EQ(std::adjacent_find(effects.begin(), effects.end()), effects.end());
+  EXPECT_EQ(effects.size(), kPacketBytes * 255);
+}
+
 TEST(Packets, every_change_of_two_bits_and_random_changes_of_two_bytes_are_refused) {
   std::mt19937 random(3);
   for (const Packet& packet : one_of_each()) {

@@ -43,6 +43,7 @@ TEST_F(HostChecks, tuned_host_passes_every_check) {
   put("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance");
   put("sys/module/usbcore/parameters/autosuspend", "-1");
   put("dev/cpu_dma_latency", "");
+  put("etc/udev/rules.d/70-palpate.rules", "");
   HostRights rights;
   rights.max_fifo_priority = 95;
   rights.max_locked_bytes = std::numeric_limits<std::uint64_t>::max();
@@ -71,7 +72,12 @@ TEST_F(HostChecks, ordinary_host_is_told_what_to_mend) {
   }
   EXPECT_EQ(failed, (std::set<std::string>{"kernel_preemption", "rtprio_limit", "memlock_limit",
                                            "realtime_throttling", "clock_source", "isolated_cpus",
-                                           "frequency_scaling", "usb_autosuspend"}));
+                                           "frequency_scaling", "usb_autosuspend", "udev_rule"}));
+  // One command mends what is not of the kernel.
+  for (const char* check :
+       {"rtprio_limit", "memlock_limit", "frequency_scaling", "usb_autosuspend", "udev_rule"}) {
+    EXPECT_EQ(find(check).mend.rfind("sudo tools/setup/host", 0), 0u) << check;
+  }
   EXPECT_EQ(find("kernel_preemption").found, "PREEMPT_DYNAMIC");
 }
 
@@ -85,7 +91,7 @@ TEST_F(HostChecks, capabilities_stand_in_for_limits) {
 
 TEST_F(HostChecks, empty_tree_gives_every_check_an_answer) {
   const auto checks = check_host({}, root);
-  EXPECT_EQ(checks.size(), 10u);
+  EXPECT_EQ(checks.size(), 11u);
   for (const HostCheck& c : checks) EXPECT_FALSE(c.found.empty()) << c.check;
 }
 

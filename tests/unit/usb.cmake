@@ -5,6 +5,13 @@ if(PALPATE_HOST)
     LIBS palpate_usb LABEL usb)
   target_link_libraries(usb_test PRIVATE "${LIBUSB_LIBRARY}")
 
+  if(NOT PALPATE_SANITIZE)  # which interpose on the same calls
+    palpate_test(usb_audit_test
+      SOURCES unit/usb_audit.cpp support/emulated_usbfs.cpp support/usbfs_calls.cpp
+      LIBS palpate_usb palpate_tools LABEL usb)
+    target_link_libraries(usb_audit_test PRIVATE "${LIBUSB_LIBRARY}" ${CMAKE_DL_LIBS})
+  endif()
+
   # Whole programs with a simulated device, where umockdev can pretend that there is one. Preloading and sanitizers do not mix.
   find_program(UMOCKDEV_RUN umockdev-run)
   find_program(DFU_UTIL dfu-util)
@@ -18,5 +25,8 @@ if(PALPATE_HOST)
     target_compile_definitions(usb_process_test PRIVATE
       PALPATE_EXECUTABLE="$<TARGET_FILE:palpate>" PALPATE_SHIM="$<TARGET_FILE:usbfs_shim>"
       UMOCKDEV_RUN="${UMOCKDEV_RUN}" DFU_UTIL="${DFU_UTIL}")
+    if(SODIUM_LIBRARY)
+      target_compile_definitions(usb_process_test PRIVATE PALPATE_SODIUM)
+    endif()
   endif()
 endif()

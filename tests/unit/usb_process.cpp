@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -17,30 +18,34 @@ namespace {
 
 using nlohmann::json;
 
-/// Device and configuration descriptor, as tests/support/emulated_usbfs.cpp has them, in
-/// hexadecimal.
+/// Device and configuration descriptor, as hal/simulator/descriptors.cpp has them, in hexadecimal.
 constexpr const char* kDescriptors =
-    "12010002000000400912010000010000000109023E00020100803209040000"
+    "12010002000000400912010000010001020109023E00020100803209040000"
     "02FF504100"
     "0705810340000207050103400002"
     "0904010000FE0102000904010100FE010200092107000000041001";
 
-std::string description() {
+/// Devices 2, 3, ... of bus 1.
+std::string description(int devices) {
   const std::string descriptors = kDescriptors;
-  return "P: /devices/usb1/1-1\n"
-         "N: bus/usb/001/002=" +
-         descriptors +
-         "\nE: DEVNAME=/dev/bus/usb/001/002\nE: DEVTYPE=usb_device\nE: BUSNUM=001\nE: DEVNUM=002\n"
-         "E: SUBSYSTEM=usb\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum=2\\n\n"
-         "A: bNumConfigurations=1\\n\nA: idVendor=1209\\n\nA: idProduct=0001\\n\nA: speed=480\\n\n"
-         "H: descriptors=" +
-         descriptors + "\n";
+  std::string text;
+  for (int i = 0; i < devices; ++i) {
+    const std::string port = std::to_string(i + 1), number = std::to_string(i + 2);
+    text += "P: /devices/usb1/1-" + port + "\nN: bus/usb/001/00" + number + "=" + descriptors +
+            "\nE: DEVNAME=/dev/bus/usb/001/00" + number +
+            "\nE: DEVTYPE=usb_device\nE: BUSNUM=001\nE: DEVNUM=00" + number +
+            "\nE: SUBSYSTEM=usb\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum=" + number +
+            "\\n\nA: bNumConfigurations=1\\n\nA: idVendor=1209\\n\nA: idProduct=0001\\n\n"
+            "A: speed=480\\n\nH: descriptors=" +
+            descriptors + "\n\n";
+  }
+  return text;
 }
 
 class UsbProcess : public testing::Test {
  protected:
   UsbProcess() {
-    folder_.write("device.umockdev", description());
+    plug_in({path("flash")});
     put_image("one.palp", 1.0);
     put_image("two.palp", 2.0);
   }
@@ -49,12 +54,19 @@ class UsbProcess : public testing::Test {
     const auto bytes = test::seal(test::parts_of({test::ball_part(0.5f, 5, 8)}, radius_m));
     folder_.write(name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   }
-  /// A program with the device plugged in; what is in the device's flash stays from one to the
-  /// next.
+  /// From now on these are connected; the words of tests/support/usbfs_shim.cpp.
+  void plug_in(const std::vector<std::string>& devices) {
+    folder_.write("device.umockdev", description(static_cast<int>(devices.size())));
+    devices_.clear();
+    for (const std::string& device : devices) devices_ += (devices_.empty() ? "" : ":") + device;
+  }
+  /// A program with the devices plugged in; what is in a device's flash stays from one to the next.
   [[nodiscard]] test::Outcome with_device(std::vector<std::string> command) const {
-    command.insert(command.begin(), {UMOCKDEV_RUN, "-d", path("device.umockdev"), "--",
-                                     "/usr/bin/env", "PALPATE_SHIM_FLASH=" + path("flash"),
-                                     "LD_PRELOAD=" PALPATE_SHIM " libumockdev-preload.so.0"});
+    command.insert(command.begin(),
+                   {UMOCKDEV_RUN, "-d", path("device.umockdev"), "--", "/usr/bin/env",
+                    "PALPATE_SHIM_DEVICES=" + devices_,
+                    key_file_.empty() ? "PALPATE_NO_KEY=" : "PALPATE_SHIM_KEY=" + key_file_,
+                    "LD_PRELOAD=" PALPATE_SHIM " libumockdev-preload.so.0"});
     return test::run(std::move(command));
   }
   [[nodiscard]] test::Outcome palpate(std::vector<std::string> arguments) const {
@@ -73,6 +85,8 @@ class UsbProcess : public testing::Test {
               0);
   }
   test::TemporaryFolder folder_;
+  std::string devices_;
+  std::string key_file_;
 };
 
 TEST_F(UsbProcess, device_is_listed_as_ready) {
@@ -82,7 +96,50 @@ TEST_F(UsbProcess, device_is_listed_as_ready) {
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list[0]["kind"], "usb");
   EXPECT_EQ(list[0]["path"], "1-1");
+  EXPECT_EQ(list[0]["serial"], "SIM1");
   EXPECT_EQ(list[0]["state"], "ready");
+}
+
+TEST_F(UsbProcess, each_of_several_devices_says_what_is_wrong_with_it_and_the_mend) {
+  plug_in({path("flash"), "denied", "busy", "version"});
+  const json list = json::parse(palpate({"devices", "--json"}).out);
+  ASSERT_EQ(list.size(), 4u);
+  EXPECT_EQ(list[0]["state"], "ready");
+  const auto problem = [&](std::size_t i) { return list[i]["problem"].get<std::string>(); };
+  EXPECT_EQ(problem(1), "open: no permission to use the device");
+  EXPECT_NE(list[1]["mend"].get<std::string>().find("tools/setup/host"), std::string::npos);
+  EXPECT_EQ(problem(2), "claim: another program uses the device");
+  EXPECT_EQ(problem(3),
+            "descriptors: the device speaks version 2 of the protocol, this host version 1");
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_FALSE(list[i]["mend"].get<std::string>().empty());
+}
+
+TEST_F(UsbProcess, one_of_several_devices_is_chosen_by_its_serial_number) {
+  plug_in({path("flash"), path("flash_2")});
+  const test::Outcome unnamed = palpate({"flash", path("one.palp"), "--device", "usb"});
+  EXPECT_EQ(unnamed.status, 4);
+  EXPECT_NE(unnamed.err.find("more than one such device"), std::string::npos) << unnamed.err;
+  EXPECT_NE(unnamed.err.find("SIM1, SIM2"), std::string::npos) << unnamed.err;
+  ASSERT_EQ(palpate({"flash", path("one.palp"), "--device", "usb:SIM2"}).status, 0);
+  const auto holds = [&](const char* device) {
+    return palpate({"flash", path("one.palp"), "--device", device}).out.find("already uses") !=
+           std::string::npos;
+  };
+  EXPECT_TRUE(holds("usb:SIM2"));
+  EXPECT_FALSE(holds("usb:SIM1"));
+  const test::Outcome unknown = palpate({"flash", path("one.palp"), "--device", "usb:SIM3"});
+  EXPECT_EQ(unknown.status, 4);
+  EXPECT_NE(unknown.err.find("SIM1, SIM2"), std::string::npos) << unknown.err;
+}
+
+TEST_F(UsbProcess, device_that_arrives_late_is_found_by_the_next_command) {
+  plug_in({});
+  const test::Outcome early = palpate({"flash", path("one.palp"), "--device", "usb"});
+  EXPECT_EQ(early.status, 4);
+  EXPECT_NE(early.err.find("device failed at find, no such device is connected"), std::string::npos)
+      << early.err;
+  plug_in({path("flash")});
+  EXPECT_EQ(palpate({"flash", path("one.palp"), "--device", "usb"}).status, 0);
 }
 
 TEST_F(UsbProcess, flash_writes_the_slots_in_turn_and_switches) {
@@ -133,6 +190,48 @@ TEST_F(UsbProcess, dfu_util_refuses_a_file_for_another_product) {
             std::string::npos);
 }
 
+#ifdef PALPATE_SODIUM
+TEST_F(UsbProcess, device_with_a_key_takes_signed_images_that_are_not_older) {
+  const test::Outcome made =
+      test::run({PALPATE_EXECUTABLE, "key", path("secret.pem"), "--new", "--c", path("key.h")});
+  ASSERT_EQ(made.status, 0) << made.err;
+  // What firmware gets: "0x12, 0x34, ...".
+  std::istringstream source(test::read_file(path("key.h")));
+  std::string key;
+  for (std::string word; source >> word;) {
+    if (word.rfind("0x", 0) == 0) key += static_cast<char>(std::stoi(word, nullptr, 16));
+  }
+  ASSERT_EQ(key.size(), 32u);
+  folder_.write("key", key);
+  key_file_ = path("key");
+
+  const auto flash = [&](const char* image, std::vector<std::string> more) {
+    std::vector<std::string> arguments{"flash", path(image), "--device", "usb", "--verify"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return palpate(arguments);
+  };
+  const test::Outcome unsigned_one = flash("one.palp", {});
+  EXPECT_EQ(unsigned_one.status, 4);
+  EXPECT_NE(unsigned_one.err.find("not signed with the device's key"), std::string::npos)
+      << unsigned_one.err;
+  const test::Outcome first = flash("one.palp", {"--sign", path("secret.pem"), "--counter", "5"});
+  EXPECT_EQ(first.status, 0) << first.err;
+  const test::Outcome older = flash("two.palp", {"--sign", path("secret.pem"), "--counter", "4"});
+  EXPECT_EQ(older.status, 4);
+  EXPECT_NE(older.err.find("older than what the device has confirmed"), std::string::npos)
+      << older.err;
+
+  // And by the other program, from a signed DFU file.
+  ASSERT_EQ(test::run({PALPATE_EXECUTABLE, "emit", path("two.palp"), "--as", "dfu", "--sign",
+                       path("secret.pem"), "--counter", "6", "-o", path("two.dfu")})
+                .status,
+            0);
+  ASSERT_EQ(dfu_util({"-a", "1", "-D", path("two.dfu")}).status, 0);
+  const test::Outcome used = flash("two.palp", {"--sign", path("secret.pem"), "--counter", "6"});
+  EXPECT_EQ(used.out, "The device already uses this image, from slot B.\n") << used.err;
+}
+#endif
+
 constexpr const char* kScene = R"([engine]
 delta_m = 0.0005
 budget_us = 400.0
@@ -152,6 +251,23 @@ role = "fixed"
 
 // How late a tick is depends on the machine, so 0 and 5 are both right; at 50 Hz it may stand still
 // for 40 ms before the device gives the loop up.
+TEST_F(UsbProcess, run_refuses_a_device_with_an_image_of_another_scene) {
+  const auto cube =
+      test::seal(test::parts_of({test::box_part({0, 0, 0}, {0.5f, 0.5f, 0.5f})}, 0.01));
+  folder_.write("cube.palp", {reinterpret_cast<const char*>(cube.data()), cube.size()});
+  folder_.write("scene.toml", kScene);
+  ASSERT_EQ(palpate({"flash", path("one.palp"), "--device", "usb"}).status, 0);
+  const auto run = [&] {
+    return palpate({"run", path("scene.toml"), "--device", "usb", "--seconds", "0.1", "--rate",
+                    "50", "--quiet"});
+  };
+  const test::Outcome refused = run();
+  EXPECT_EQ(refused.status, 4);
+  EXPECT_NE(refused.err.find("device failed at image identity"), std::string::npos) << refused.err;
+  ASSERT_EQ(palpate({"flash", path("cube.palp"), "--device", "usb"}).status, 0);
+  EXPECT_NE(run().status, 4);
+}
+
 TEST_F(UsbProcess, run_feels_the_contact_through_the_device) {
   const auto cube =
       test::seal(test::parts_of({test::box_part({0, 0, 0}, {0.5f, 0.5f, 0.5f})}, 0.01));

@@ -50,8 +50,7 @@ std::unique_ptr<LibusbTransport> transport_of(EmulatedUsbfs& usbfs, Kind kind) {
 }
 
 struct UsbRig {
-  explicit UsbRig(OpenDeviceOptions options = {})
-      : model(std::move(options)), usbfs(model, test::open_device_descriptors()) {
+  explicit UsbRig(OpenDeviceOptions options = {}) : model(std::move(options)), usbfs(model) {
     auto transport = transport_of(usbfs, Kind::open_protocol);
     device = std::make_unique<StreamedDevice>(
         std::move(transport), std::make_unique<protocol::HostDriver>(), clock, StreamOptions{});
@@ -111,8 +110,11 @@ OpenDeviceOptions patient() {
 }
 
 TEST(Libusb, interfaces_are_found_by_what_they_are) {
-  OpenDevice model({});
-  EmulatedUsbfs usbfs(model, test::open_device_descriptors());
+  simulator::FlashModel memory({});
+  OpenDeviceOptions options;
+  options.flash = &memory;
+  OpenDevice model(options);
+  EmulatedUsbfs usbfs(model);
   const Context context = make_context();
   libusb_device_handle* handle = nullptr;
   ASSERT_EQ(libusb_wrap_sys_device(context.get(), usbfs.descriptor(), &handle), 0);
@@ -210,6 +212,27 @@ TEST(Libusb, unplugging_with_out_transfers_under_way_is_a_loss) {
   rig.device->stop();
 }
 
+// The plug is pulled at each transfer of a device's life: opening, starting, exchange, stopping.
+TEST(Libusb, unplugging_before_any_transfer_is_a_problem_or_a_loss_and_never_a_hang) {
+  int lost_while_streaming = 0;
+  for (int submissions = 0; submissions < 40; ++submissions) {
+    UsbRig rig(patient());
+    rig.usbfs.unplug_after(submissions);
+    if (const auto problem = rig.begin()) {
+      EXPECT_FALSE(problem->phase.empty()) << submissions;
+      EXPECT_FALSE(problem->mend.empty()) << submissions;
+    } else {
+      rig.run(3000 * kMs, [&] { return rig.has_faults(kDeviceLost); });
+      EXPECT_TRUE(rig.has_faults(kDeviceLost)) << submissions;
+      ++lost_while_streaming;
+    }
+    rig.device->stop();
+    EXPECT_EQ(rig.usbfs.under_way(), 0u) << submissions;
+    EXPECT_TRUE(rig.force_ends()) << submissions;
+  }
+  EXPECT_GT(lost_while_streaming, 20);
+}
+
 TEST(Libusb, unplugged_device_fails_at_its_phase) {
   UsbRig before_open;
   before_open.usbfs.unplug();
@@ -226,7 +249,7 @@ TEST(Libusb, unplugged_device_fails_at_its_phase) {
 
 TEST(Libusb, control_requests_that_are_refused_or_ignored_are_told_apart) {
   OpenDevice model({});
-  EmulatedUsbfs usbfs(model, test::open_device_descriptors());
+  EmulatedUsbfs usbfs(model);
   const auto transport = transport_of(usbfs, Kind::open_protocol);
   std::array<std::byte, 64> reply{};
   EXPECT_EQ(transport->control_in({protocol::kVendorIn, 0x7f, 0, 0}, reply, 500).status,
@@ -259,7 +282,7 @@ TEST(Libusb, image_is_written_read_back_and_used) {
   options.flash = &memory;
   options.layout = layout;
   OpenDevice model(options);
-  EmulatedUsbfs usbfs(model, test::open_device_descriptors());
+  EmulatedUsbfs usbfs(model);
   const auto image =
       palpate::test::seal(palpate::test::parts_of({palpate::test::ball_part(0.5f, 5, 8)}));
   MonotonicClock clock;
@@ -280,7 +303,7 @@ TEST(Libusb, falcon_gets_its_firmware_and_gives_readings) {
   simulator::FalconDeviceOptions options;
   options.homed_after_s = 0.05;
   simulator::FalconDevice model(options);
-  EmulatedUsbfs usbfs(model, test::falcon_descriptors());
+  EmulatedUsbfs usbfs(model);
   MonotonicClock clock;
   StreamedDevice device(transport_of(usbfs, Kind::falcon),
                         std::make_unique<falcon::FalconDriver>(std::vector<std::byte>(2000)), clock,

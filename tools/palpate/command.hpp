@@ -62,6 +62,7 @@ void add_sweep(CLI::App& app);
 void add_run(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_flash(CLI::App& app);
+void add_key(CLI::App& app);
 void add_doctor(CLI::App& app);
 
 }  // namespace palpate::cli

@@ -8,7 +8,6 @@
 
 #include "hal/falcon/bring_up.hpp"
 #include "hal/falcon/driver.hpp"
-#include "hal/protocol/host_driver.hpp"
 #include "hal/transport/streamed_device.hpp"
 #include "tools/palpate/command.hpp"
 
@@ -59,6 +58,7 @@ std::unique_ptr<hal::Transport> open_usb(const std::string& device, hal::usb::Ki
 
 std::unique_ptr<hal::Device> make_usb_device(const std::string& device,
                                              const std::filesystem::path& firmware,
+                                             const std::vector<hal::protocol::ImageHash>& images,
                                              hal::Clock& clock, int fifo_priority) {
   std::unique_ptr<hal::Driver> driver;
   auto kind = hal::usb::Kind::open_protocol;
@@ -66,7 +66,7 @@ std::unique_ptr<hal::Device> make_usb_device(const std::string& device,
     kind = hal::usb::Kind::falcon;
     driver = std::make_unique<hal::falcon::FalconDriver>(read_firmware(firmware));
   } else {
-    driver = std::make_unique<hal::protocol::HostDriver>();
+    driver = std::make_unique<hal::protocol::HostDriver>(images);
   }
   hal::StreamOptions options;
   options.fifo_priority = fifo_priority;

@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hal/clock.hpp"
 #include "hal/device.hpp"
+#include "hal/protocol/host_driver.hpp"
 #include "hal/transport/transport.hpp"
 #include "hal/usb/find.hpp"
 
@@ -34,9 +36,10 @@ struct DeviceChoice {
 /// A device on USB, not yet open. Throws Failure: kDevice where there is none, kRefused where the
 /// firmware file cannot be read.
 /// @param firmware  the maker's file for a Falcon; empty: none  @param clock  must outlive it
+/// @param images  of the scene, see hal::protocol::HostDriver
 /// @param fifo_priority  of its I/O thread; 0: an ordinary thread
-[[nodiscard]] std::unique_ptr<hal::Device> make_usb_device(const std::string& device,
-                                                           const std::filesystem::path& firmware,
-                                                           hal::Clock& clock, int fifo_priority);
+[[nodiscard]] std::unique_ptr<hal::Device> make_usb_device(
+    const std::string& device, const std::filesystem::path& firmware,
+    const std::vector<hal::protocol::ImageHash>& images, hal::Clock& clock, int fifo_priority);
 
 }  // namespace palpate::cli

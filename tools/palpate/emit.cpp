@@ -9,6 +9,7 @@
 #include "hal/flash/dfu_suffix.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/image_file.hpp"
+#include "tools/palpate/signing.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -22,6 +23,7 @@ struct EmitOptions {
   std::string machine = "x86_64";
   std::uint32_t address = 0;
   hal::flash::DfuSuffix suffix;
+  SignOptions sign;
 };
 
 bool is_word(const std::string& text, std::string_view also) {
@@ -38,7 +40,8 @@ void check_options(const CLI::App& command, const std::string& form) {
     const char* name;
     std::string_view forms;
   } kOptions[] = {{"--symbol", "c elf"}, {"--section", "c elf"}, {"--address", "hex"},
-                  {"--machine", "elf"},  {"--vendor-id", "dfu"}, {"--product-id", "dfu"}};
+                  {"--machine", "elf"},  {"--vendor-id", "dfu"}, {"--product-id", "dfu"},
+                  {"--sign", "dfu"},     {"--counter", "dfu"}};
   for (const auto& option : kOptions) {
     if (command.count(option.name) > 0 && option.forms.find(form) == std::string_view::npos) {
       throw Failure(kUsage, "option has no meaning for this form",
@@ -81,10 +84,9 @@ bake::Machine machine_of(const EmitOptions& options, std::size_t size) {
   return bake::Machine::arm;
 }
 
-std::vector<std::byte> to_dfu_file(std::span<const std::byte> image,
+std::vector<std::byte> to_dfu_file(std::vector<std::byte> file,
                                    const hal::flash::DfuSuffix& suffix) {
-  std::vector<std::byte> file(image.begin(), image.end());
-  const auto tail = hal::flash::make_suffix(image, suffix);
+  const auto tail = hal::flash::make_suffix(file, suffix);
   file.insert(file.end(), tail.begin(), tail.end());
   return file;
 }
@@ -99,7 +101,7 @@ void emit(const EmitOptions& options) {
     check_address(options.address, bytes.size());
     write_file(options.out, bake::to_intel_hex(bytes, options.address));
   } else if (options.form == "dfu") {
-    write_file(options.out, to_dfu_file(bytes, options.suffix));
+    write_file(options.out, to_dfu_file(with_signature(bytes, options.sign), options.suffix));
   } else {
     const std::string section = options.section.empty() ? ".palpate_image" : options.section;
     write_file(options.out, bake::to_elf_object(bytes, machine_of(options, bytes.size()), section,
@@ -136,6 +138,7 @@ void add_emit(CLI::App& app) {
       ->add_option("--product-id", options->suffix.product,
                    "dfu: USB product that the file is for, 0xffff for any")
       ->capture_default_str();
+  add_sign_options(*command, options->sign, "dfu: ");
   command->callback([command, options] {
     check_options(*command, options->form);
     emit(*options);

@@ -9,11 +9,13 @@
 #include <string>
 #include <thread>
 #include <variant>
+#include <vector>
 
 #include "hal/flash/update.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/device_choice.hpp"
 #include "tools/palpate/image_file.hpp"
+#include "tools/palpate/signing.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -28,6 +30,7 @@ struct FlashOptions {
   std::filesystem::path image;
   std::string device;
   std::string slot;
+  SignOptions sign;
   bool verify = false;
   bool quiet = false;
 };
@@ -67,6 +70,7 @@ void flash(const FlashOptions& options) {
     throw Failure(kDevice, "this kind of device holds no images", options.device,
                   "name one of the open protocol: usb or usb:SERIAL");
   }
+  const std::vector<std::byte> file = with_signature(image.bytes(), options.sign);
   std::optional<std::uint8_t> wanted;
   if (!options.slot.empty()) wanted = static_cast<std::uint8_t>(options.slot == "A" ? 0 : 1);
   const UpdateTarget target = target_of(options.device);
@@ -75,7 +79,7 @@ void flash(const FlashOptions& options) {
               << name_of(target.image.active_slot) << ".\n";
     return;
   }
-  const auto chosen = hal::flash::choose_slot(target, image.bytes().size(), wanted);
+  const auto chosen = hal::flash::choose_slot(target, file.size(), wanted);
   if (const auto* problem = std::get_if<hal::DeviceProblem>(&chosen))
     fail(options.device, *problem);
   const auto slot = std::get<std::uint8_t>(chosen);
@@ -83,7 +87,7 @@ void flash(const FlashOptions& options) {
     const auto update = open_usb(options.device, Kind::update);
     const bake::Progress show = progress(options.quiet);
     hal::MonotonicClock clock;
-    if (const auto problem = hal::flash::write_slot(*update, clock, slot, image.bytes(), show)) {
+    if (const auto problem = hal::flash::write_slot(*update, clock, slot, file, show)) {
       fail(options.device, *problem);
     }
   }
@@ -107,6 +111,7 @@ void add_flash(CLI::App& app) {
   command->add_option("--device", options->device, "usb[:SERIAL]")->required()->check(is_device());
   command->add_option("--slot", options->slot, "A or B; absent: the one that is not in use")
       ->check(CLI::IsMember({"A", "B"}));
+  add_sign_options(*command, options->sign);
   command->add_flag("--verify", options->verify,
                     "also wait for the device's restart and see that it uses the image");
   command->add_flag("--quiet", options->quiet, "no progress");

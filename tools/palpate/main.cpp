@@ -34,6 +34,7 @@ constexpr std::initializer_list<void (*)(CLI::App&)> kCommands = {
     add_run,
     add_devices,
     add_flash,
+    add_key,
     add_doctor,
     // clang-format on
 };

@@ -12,6 +12,7 @@
 #include <string>
 #include <system_error>
 #include <thread>
+#include <vector>
 
 #include "hal/mock/device.hpp"
 #include "tools/palpate/command.hpp"
@@ -22,6 +23,7 @@
 #include "tools/palpate/stable_scene.hpp"
 #include "tools/realtime/loop.hpp"
 #include "tools/realtime/realtime_thread.hpp"
+#include "tools/realtime/scene_hand.hpp"
 #include "tools/realtime/trace_writer.hpp"
 
 namespace palpate::cli {
@@ -73,32 +75,20 @@ class StopOnSignal {
   struct sigaction old_terminate_ {};
 };
 
-hal::mock::HandParameters hand_of(const config::Scene& scene) {
-  const config::MockHand& from = scene.hand;
-  hal::mock::HandParameters hand;
-  hand.mass_kg = from.mass_kg;
-  hand.inertia_kg_m2 = from.inertia_kg_m2;
-  hand.grip_N_per_m = from.grip_N_per_m;
-  hand.grip_Nm_per_rad = from.grip_Nm_per_rad;
-  hand.damping_N_s_per_m = from.damping_N_s_per_m;
-  hand.damping_Nm_s_per_rad = from.damping_Nm_s_per_rad;
-  hand.rest = scene.bodies[scene.tool].pose;
-  for (const config::Waypoint& w : from.path) hand.script.push_back({w.t_s, w.pose});
-  return hand;
-}
-
 std::unique_ptr<hal::Device> make_device(const RunOptions& options, const config::Scene& scene,
+                                         const std::vector<hal::protocol::ImageHash>& images,
                                          double rate_Hz, hal::Clock& clock) {
   const int priority = options.realtime.fifo_priority;
   if (options.device != "mock") {
     // Below the loop, which does not wait for it; above everything else.
-    return make_usb_device(options.device, options.firmware, clock, std::max(priority - 1, 0));
+    return make_usb_device(options.device, options.firmware, images, clock,
+                           std::max(priority - 1, 0));
   }
   hal::mock::Options mock;
   mock.rate_Hz = kMockReadingsPerTick * rate_Hz;
   // It stands in for hardware, which the loop does not keep waiting either.
   mock.fifo_priority = priority == 0 ? 0 : std::min(priority + 1, realtime::kMaxFifoPriority);
-  return std::make_unique<hal::mock::MockDevice>(hand_of(scene), mock);
+  return std::make_unique<hal::mock::MockDevice>(realtime::hand_of(scene), mock);
 }
 
 realtime::LoopSettings loop_settings(const RunOptions& options, const config::Scene& scene,
@@ -208,10 +198,10 @@ void run(const RunOptions& options) {
   const config::Scene scene = config::load_scene(options.scene);
   const double rate_Hz = options.rate_Hz.value_or(scene.rate_Hz);
   hal::MonotonicClock clock;
-  const auto device = make_device(options, scene, rate_Hz, clock);
   const StableScene stable = stable_scene(scene, rate_Hz, damping(options, scene));
   if (!stable.note.empty() && !options.quiet) std::cerr << stable.note << "\n";
   SceneEngine engine(stable.scene);
+  const auto device = make_device(options, scene, engine.image_hashes(), rate_Hz, clock);
   QueryStack queries(stable.scene, engine.engine(), engine.start_poses(), rate_Hz);
   if (const auto problem = device->open()) fail(options.device, *problem);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/palpate/scene_engine.hpp"
 
+#include <algorithm>
 #include <string>
 #include <system_error>
 
@@ -84,6 +85,14 @@ void SceneEngine::restart() {
                       "--partner-area; palpate inspect says what an image serves"
                     : "check [engine], [force], [limits] and that the images were baked for this "
                       "engine");
+}
+
+std::vector<std::array<std::uint8_t, 32>> SceneEngine::image_hashes() const {
+  std::vector<std::array<std::uint8_t, 32>> hashes;
+  for (const auto& [file, image] : images_) {
+    std::copy_n(image.view().header->content_sha256, 32, hashes.emplace_back().begin());
+  }
+  return hashes;
 }
 
 std::vector<Pose> SceneEngine::start_poses() const {

@@ -2,6 +2,7 @@
 // From a scene file's struct to an engine that is ready to tick.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -38,6 +39,9 @@ class SceneEngine {
 
   /// [bodies] where the scene puts them.
   [[nodiscard]] std::vector<Pose> start_poses() const;
+
+  /// content_sha256 of the scene's images.
+  [[nodiscard]] std::vector<std::array<std::uint8_t, 32>> image_hashes() const;
 
   [[nodiscard]] const Limits& limits() const { return limits_; }
   [[nodiscard]] std::size_t image_bytes() const { return image_bytes_; }

@@ -20,6 +20,9 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
 constexpr std::uint64_t kWantedPriority = 80;
+/// Of Palpate's sources: udev rule, limits and boot service at once.
+constexpr const char* kSetUp = "sudo tools/setup/host";
+constexpr const char* kSetUpAndLogIn = "sudo tools/setup/host, then log in again";
 
 /// The first line of a small file; absent where it cannot be read.
 std::optional<std::string> first_line(const fs::path& file) {
@@ -52,13 +55,10 @@ HostCheck kernel_preemption(const fs::path& root) {
 
 HostCheck rtprio_limit(const HostRights& rights) {
   const bool ok = rights.any_priority || rights.max_fifo_priority >= kWantedPriority;
-  return make(
-      "rtprio_limit", ok,
-      rights.any_priority ? "any (CAP_SYS_NICE)"
-                          : number_or_unlimited(rights.max_fifo_priority, ""),
-      "at least " + std::to_string(kWantedPriority),
-      "echo \"$USER - rtprio 95\" | sudo tee /etc/security/limits.d/95-palpate-rtprio.conf, "
-      "then log in again");
+  return make("rtprio_limit", ok,
+              rights.any_priority ? "any (CAP_SYS_NICE)"
+                                  : number_or_unlimited(rights.max_fifo_priority, ""),
+              "at least " + std::to_string(kWantedPriority), kSetUpAndLogIn);
 }
 
 HostCheck memlock_limit(const HostRights& rights) {
@@ -66,9 +66,7 @@ HostCheck memlock_limit(const HostRights& rights) {
   return make("memlock_limit", ok,
               rights.any_memory ? "any (CAP_IPC_LOCK)"
                                 : number_or_unlimited(rights.max_locked_bytes, " bytes"),
-              "unlimited",
-              "echo \"$USER - memlock unlimited\" | sudo tee "
-              "/etc/security/limits.d/95-palpate-memlock.conf, then log in again");
+              "unlimited", kSetUpAndLogIn);
 }
 
 HostCheck realtime_throttling(const fs::path& root) {
@@ -105,10 +103,7 @@ HostCheck cpu_dma_latency(const fs::path& root) {
               !exists ? "no processor sleep states"
               : ok    ? "writable"
                       : "not writable",
-              "/dev/cpu_dma_latency writable, so that the loop can keep processors awake",
-              "echo 'KERNEL==\"cpu_dma_latency\", GROUP=\"plugdev\", MODE=\"0660\"' | sudo tee "
-              "/etc/udev/rules.d/95-palpate-latency.rules && sudo udevadm trigger "
-              "--name-match=cpu_dma_latency");
+              "/dev/cpu_dma_latency writable, so that the loop can keep processors awake", kSetUp);
 }
 
 HostCheck frequency_scaling(const fs::path& root) {
@@ -120,8 +115,7 @@ HostCheck frequency_scaling(const fs::path& root) {
     found = *governor;
   }
   return make("frequency_scaling", found.empty(), found.empty() ? "none, or performance" : found,
-              "the governor performance on every processor",
-              "echo performance | sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor");
+              "the governor performance on every processor", kSetUp);
 }
 
 HostCheck usb_autosuspend(const fs::path& root) {
@@ -129,8 +123,14 @@ HostCheck usb_autosuspend(const fs::path& root) {
   return make("usb_autosuspend", !found || *found == "-1",
               found ? *found + " s" : "no USB in this kernel",
               "-1 (never): a suspended device wakes up too late",
-              "echo -1 | sudo tee /sys/module/usbcore/parameters/autosuspend, then plug the device "
-              "in again");
+              "sudo tools/setup/host, then plug the device in again");
+}
+
+HostCheck udev_rule(const fs::path& root) {
+  constexpr const char* kRule = "udev/rules.d/70-palpate.rules";
+  const bool ok = fs::exists(root / "etc" / kRule) || fs::exists(root / "usr/lib" / kRule);
+  return make("udev_rule", ok, ok ? "installed" : "not installed",
+              "70-palpate.rules, so that haptic devices may be used without root", kSetUp);
 }
 
 bool flushes_denormals() {
@@ -187,11 +187,10 @@ HostRights host_rights() {
 }
 
 std::vector<HostCheck> check_host(const HostRights& rights, const fs::path& root) {
-  return {kernel_preemption(root), rtprio_limit(rights),
-          memlock_limit(rights),   realtime_throttling(root),
-          clock_source(root),      isolated_cpus(root),
-          cpu_dma_latency(root),   frequency_scaling(root),
-          usb_autosuspend(root),   denormal_mode()};
+  return {kernel_preemption(root),   rtprio_limit(rights),    memlock_limit(rights),
+          realtime_throttling(root), clock_source(root),      isolated_cpus(root),
+          cpu_dma_latency(root),     frequency_scaling(root), usb_autosuspend(root),
+          udev_rule(root),           denormal_mode()};
 }
 
 }  // namespace palpate::realtime

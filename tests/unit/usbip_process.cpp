@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// palpate-sim as a process, and the usbip tool of the Linux kernel as its client.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <string>
+#include <vector>
+
+#include "../support/process.hpp"
+#include "../support/temporary_folder.hpp"
+
+namespace palpate {
+namespace {
+
+/// palpate-sim on a free port, until this ends.
+class Simulator {
+ public:
+  explicit Simulator(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {PALPATE_SIM, "--port", "0"});
+    std::vector<char*> words;
+    for (std::string& argument : arguments) words.push_back(argument.data());
+    words.push_back(nullptr);
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) return;
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_adddup2(&files, ends[1], 1);
+    EXPECT_EQ(::posix_spawn(&process_, words[0], &files, nullptr, words.data(), environ), 0);
+    posix_spawn_file_actions_destroy(&files);
+    ::close(ends[1]);
+    char letter = 0;
+    while (::read(ends[0], &letter, 1) == 1 && letter != '\n') greeting_ += letter;
+    ::close(ends[0]);
+  }
+  ~Simulator() {
+    ::kill(process_, SIGTERM);
+    int status = -1;
+    ::waitpid(process_, &status, 0);
+    EXPECT_EQ(status, 0);
+  }
+  Simulator(const Simulator&) = delete;
+  Simulator& operator=(const Simulator&) = delete;
+  Simulator(Simulator&&) = delete;
+  Simulator& operator=(Simulator&&) = delete;
+
+  /// Of "A simulated device, usb:SIM0001, on 127.0.0.1:34567. ..."
+  [[nodiscard]] std::string port() const {
+    const std::size_t end = greeting_.find(". Where");
+    const std::size_t colon = greeting_.rfind(':', end);
+    return greeting_.substr(colon + 1, end - colon - 1);
+  }
+
+ private:
+  pid_t process_ = -1;
+  std::string greeting_;
+};
+
+test::Outcome list(const Simulator& simulator) {
+  return test::run({USBIP_TOOL, "--tcp-port", simulator.port(), "list", "-r", "127.0.0.1"});
+}
+
+TEST(PalpateSim, usbip_lists_a_device_of_the_open_protocol_with_both_interfaces) {
+  const test::TemporaryFolder folder;
+  const Simulator simulator({"--flash", folder.path() / "flash"});
+  const test::Outcome outcome = list(simulator);
+  EXPECT_NE(outcome.out.find("1-1: "), std::string::npos) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("1209:0001"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("ff/50/41"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("fe/01/02"), std::string::npos) << outcome.out;
+}
+
+TEST(PalpateSim, usbip_lists_a_falcon) {
+  const Simulator simulator({"--device", "falcon"});
+  EXPECT_NE(list(simulator).out.find("0403:cb48"), std::string::npos);
+}
+
+TEST(PalpateSim, wrong_options_are_a_usage_error_in_one_line) {
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"--device", "pencil"}, {"--address", "here"}, {"--rate", "0"}, {"--scene", "none"}}) {
+    std::vector<std::string> command{PALPATE_SIM};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    const test::Outcome outcome = test::run(command);
+    EXPECT_EQ(outcome.status, 2) << arguments[0];
+    EXPECT_EQ(outcome.err.rfind("palpate-sim: error: ", 0), 0u) << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace palpate
