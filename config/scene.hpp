@@ -77,6 +77,8 @@ struct Scene {
   std::optional<double> contact_rate_Hz;           ///< [run]; absent: every tick asks for contacts
   Coupling coupling = Coupling::direct;            ///< [force]
   double contact_damping_N_s_per_m = 0;            ///< [force]
+  double steady_force_N_per_s = 150;               ///< [force], SteadyRates
+  double steady_torque_Nm_per_s = 4;               ///< [force], likewise
   double max_force_slew_N_per_s = 2000;            ///< [force], of what is sent
   double max_torque_slew_Nm_per_s = 60;            ///< [force], likewise
   double max_power_W = 5;                          ///< [force], given to the hand

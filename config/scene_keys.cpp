@@ -81,6 +81,13 @@ constexpr Key<Scene> kForceKeys[] = {
     {"max_torque_Nm", "N m",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.max_torque_Nm; }, 0, kMost},
      "the torque on the tool is scaled down to this length"},
+    {"steady_force_N_per_s", "N/s",
+     Real<Scene>{[](Scene& s) -> double& { return s.steady_force_N_per_s; }, 0, kMost},
+     "`palpate run`, coupled directly: what the stiffness does not make of the tool's motion, "
+     "such as a change of level or of budget, changes the force no faster"},
+    {"steady_torque_Nm_per_s", "N m/s",
+     Real<Scene>{[](Scene& s) -> double& { return s.steady_torque_Nm_per_s; }, 0, kMost},
+     "the same of the torque"},
     {"max_force_slew_N_per_s", "N/s",
      Real<Scene>{[](Scene& s) -> double& { return s.max_force_slew_N_per_s; }, 0, kMost},
      "`palpate run`: the force that is sent changes no faster"},

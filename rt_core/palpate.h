@@ -138,6 +138,41 @@ palpate_status palpate_tick(palpate_engine* engine, const palpate_pose* poses,
 palpate_status palpate_get_contact(const palpate_engine* engine, uint32_t index,
                                    palpate_contact* out);
 
+/* The wrench of the last tick at a pose of the tool nearby: wrench - stiffness * displacement, for
+ * a loop that is faster than the contact query (force/linear_contact.hpp). */
+palpate_status palpate_predict(const palpate_engine* engine, const palpate_pose* tool,
+                               double force_N[3], double torque_Nm[3]);
+
+/* Virtual coupling (force/coupling.hpp): the hand feels a spring to a simulated tool that feels the
+ * contacts, however stiff they are. The engine's own limits of force belong off then. */
+typedef struct palpate_coupling_settings {
+  double spring_N_per_m, spring_Nm_per_rad; /* > 0; the damper beside them is critical */
+  double mass_kg, inertia_kg_m2;            /* > 0; of the simulated tool */
+  double contact_damping_s;                 /* >= 0; damping of contacts over their stiffness */
+} palpate_coupling_settings;
+
+void palpate_default_coupling(palpate_coupling_settings* out);
+
+#define PALPATE_COUPLING_WORDS 32
+
+/* A simulated tool. Plain memory: may be copied. */
+typedef struct palpate_coupling {
+  double opaque[PALPATE_COUPLING_WORDS];
+} palpate_coupling;
+
+/* Puts the simulated tool at rest where the handle is. */
+palpate_status palpate_couple(const palpate_coupling_settings* settings, const palpate_pose* handle,
+                              palpate_coupling* out);
+
+/* Where the simulated tool is: the pose to tick the engine with. */
+palpate_status palpate_coupled_pose(const palpate_coupling* coupling, palpate_pose* out);
+
+/* Moves the simulated tool on by one period under the last tick's contacts; gives the wrench for
+ * the handle, about its origin. Once after each tick. period_s: > 0. Constant cost. */
+palpate_status palpate_step_coupling(palpate_coupling* coupling, const palpate_engine* engine,
+                                     const palpate_pose* handle, double period_s, double force_N[3],
+                                     double torque_Nm[3]);
+
 /* NOLINTEND(readability-identifier-naming) */
 
 #ifdef __cplusplus

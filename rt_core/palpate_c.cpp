@@ -6,6 +6,8 @@
 #include <type_traits>
 
 #include "rt_core/base/arena.hpp"
+#include "rt_core/force/coupling.hpp"
+#include "rt_core/force/linear_contact.hpp"
 #include "rt_core/palpate.h"
 #include "rt_core/palpate_rt.hpp"
 #include "rt_core/workspace.hpp"
@@ -16,6 +18,8 @@ struct palpate_engine {
   std::uint32_t bodies = 0;
   palpate::Engine* engine = nullptr;
   std::span<const palpate::Contact> contacts;
+  std::uint32_t tool = 0;
+  palpate::force::LinearContact felt;  // of the last tick
 };
 
 namespace palpate {
@@ -82,7 +86,7 @@ bool settings_of(const palpate_settings& from, Settings& out) noexcept {
   return true;
 }
 
-void put(Vec3d from, double (&to)[3]) noexcept {
+void put(Vec3d from, double* to) noexcept {
   to[0] = from.x;
   to[1] = from.y;
   to[2] = from.z;
@@ -104,6 +108,46 @@ void put(const TickResult& from, palpate_result& to) noexcept {
   to.truncated_by_units = from.certificate.truncated_by_units ? 1 : 0;
   to.truncated_by_memory = from.certificate.truncated_by_memory ? 1 : 0;
   to.iteration_cap_met = from.certificate.iteration_cap_met ? 1 : 0;
+}
+
+Pose pose_of(const palpate_pose& from) noexcept {
+  const double* p = from.position_m;
+  const double* q = from.orientation;
+  return {{p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]}};
+}
+
+bool finite(double v) noexcept { return v - v == 0; }
+
+/// As the engine judges poses.
+bool sound(const palpate_pose* pose) noexcept {
+  if (pose == nullptr) return false;
+  double squared = 0;
+  for (const double v : pose->orientation) squared += v * v;
+  for (const double v : pose->position_m) {
+    if (!finite(v)) return false;
+  }
+  constexpr double kUnitQuaternion = 1e-3;
+  const double length = sqrt_of(squared);
+  return length >= 1 - kUnitQuaternion && length <= 1 + kUnitQuaternion;
+}
+
+bool sound(const palpate_coupling_settings* s) noexcept {
+  if (s == nullptr || !finite(s->contact_damping_s) || !(s->contact_damping_s >= 0)) return false;
+  for (const double v : {s->spring_N_per_m, s->spring_Nm_per_rad, s->mass_kg, s->inertia_kg_m2}) {
+    if (!finite(v) || !(v > 0)) return false;
+  }
+  return true;
+}
+
+static_assert(sizeof(force::VirtualTool) <= sizeof(palpate_coupling));
+static_assert(alignof(force::VirtualTool) <= alignof(palpate_coupling));
+static_assert(std::is_trivially_copyable_v<force::VirtualTool>);
+
+force::VirtualTool* tool_of(palpate_coupling* coupling) noexcept {
+  return std::launder(static_cast<force::VirtualTool*>(static_cast<void*>(coupling->opaque)));
+}
+const force::VirtualTool* tool_of(const palpate_coupling* coupling) noexcept {
+  return as<force::VirtualTool>(coupling->opaque);
 }
 
 Budget budget_of(const palpate_budget& from) noexcept {
@@ -183,6 +227,7 @@ palpate_status palpate_create(const palpate_scene* scene, const palpate_settings
   if (made.empty()) return palpate::code(Status::not_enough_memory);
   palpate_engine* front = made.data();
   front->bodies = scene->bodies;
+  front->tool = scene->tool;
   const Status status = palpate::create(
       palpate::scene_of(*scene), how, palpate::limits_of(*limits),
       {static_cast<std::byte*>(memory) + palpate::kFront, size - palpate::kFront}, front->engine);
@@ -224,15 +269,14 @@ palpate_status palpate_tick(palpate_engine* engine, const palpate_pose* poses,
   if (engine == nullptr || poses == nullptr || budget == nullptr || out == nullptr)
     return PALPATE_BAD_ARGUMENT;
   for (std::uint32_t i = 0; i < engine->bodies; ++i) {
-    const double* p = poses[i].position_m;
-    const double* q = poses[i].orientation;
-    engine->poses[i] = {{p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]}};
+    engine->poses[i] = palpate::pose_of(poses[i]);
   }
   palpate::TickResult result;
   const Status status = palpate::tick(*engine->engine, {engine->poses, engine->bodies},
                                       palpate::budget_of(*budget), result);
   if (status != Status::ok) return palpate::code(status);
   engine->contacts = result.contacts;
+  engine->felt = {engine->poses[engine->tool], result.wrench, result.stiffness};
   palpate::put(result, *out);
   return PALPATE_OK;
 }
@@ -253,6 +297,62 @@ palpate_status palpate_get_contact(const palpate_engine* engine, uint32_t index,
   out->piece_b = c.piece_b;
   out->level_b = c.level_b;
   out->reserved = 0;
+  return PALPATE_OK;
+}
+
+palpate_status palpate_predict(const palpate_engine* engine, const palpate_pose* tool,
+                               double force_N[3], double torque_Nm[3]) {
+  if (engine == nullptr || tool == nullptr || force_N == nullptr || torque_Nm == nullptr)
+    return PALPATE_BAD_ARGUMENT;
+  if (!palpate::sound(tool)) return palpate::code(Status::bad_pose);
+  const palpate::Wrench wrench = palpate::force::predicted(engine->felt, palpate::pose_of(*tool));
+  palpate::put(wrench.force_N, force_N);
+  palpate::put(wrench.torque_Nm, torque_Nm);
+  return PALPATE_OK;
+}
+
+void palpate_default_coupling(palpate_coupling_settings* out) {
+  if (out == nullptr) return;
+  const palpate::force::CouplingSettings s;
+  *out = {s.spring_N_per_m, s.spring_Nm_per_rad, s.mass_kg, s.inertia_kg_m2, s.contact_damping_s};
+}
+
+palpate_status palpate_couple(const palpate_coupling_settings* settings, const palpate_pose* handle,
+                              palpate_coupling* out) {
+  if (!palpate::sound(settings) || handle == nullptr || out == nullptr) return PALPATE_BAD_ARGUMENT;
+  if (!palpate::sound(handle)) return palpate::code(Status::bad_pose);
+  auto* tool = new (out->opaque) palpate::force::VirtualTool(
+      {settings->spring_N_per_m, settings->spring_Nm_per_rad, settings->mass_kg,
+       settings->inertia_kg_m2, settings->contact_damping_s});
+  tool->reset(palpate::pose_of(*handle));
+  return PALPATE_OK;
+}
+
+palpate_status palpate_coupled_pose(const palpate_coupling* coupling, palpate_pose* out) {
+  if (coupling == nullptr || out == nullptr) return PALPATE_BAD_ARGUMENT;
+  const palpate::Pose& pose = palpate::tool_of(coupling)->pose();
+  palpate::put(pose.position_m, out->position_m);
+  const palpate::Quat& q = pose.orientation;
+  out->orientation[0] = q.w;
+  out->orientation[1] = q.x;
+  out->orientation[2] = q.y;
+  out->orientation[3] = q.z;
+  return PALPATE_OK;
+}
+
+palpate_status palpate_step_coupling(palpate_coupling* coupling, const palpate_engine* engine,
+                                     const palpate_pose* handle, double period_s, double force_N[3],
+                                     double torque_Nm[3]) {
+  if (coupling == nullptr || engine == nullptr || handle == nullptr || force_N == nullptr ||
+      torque_Nm == nullptr || !palpate::finite(period_s) || !(period_s > 0)) {
+    return PALPATE_BAD_ARGUMENT;
+  }
+  if (!palpate::sound(handle)) return palpate::code(Status::bad_pose);
+  const palpate::force::LinearContact& felt = engine->felt;
+  const palpate::Wrench wrench = palpate::tool_of(coupling)->step(
+      palpate::pose_of(*handle), felt.wrench, felt.stiffness, period_s);
+  palpate::put(wrench.force_N, force_N);
+  palpate::put(wrench.torque_Nm, torque_Nm);
   return PALPATE_OK;
 }
 

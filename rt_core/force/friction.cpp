@@ -10,7 +10,7 @@ struct Pressure {
   Vec3d centre_m{};  ///< world
 };
 
-double size_N(const Contact& c, const Settings& s) noexcept {
+double size_of(const Contact& c, const Settings& s) noexcept {
   return c.weight * s.stiffness_N_per_m * (s.delta_m - c.distance_m);
 }
 
@@ -19,7 +19,7 @@ Pressure pressure_of(std::uint32_t pair, std::span<const Contact> contacts,
   Pressure out;
   for (const Contact& c : contacts) {
     if (c.pair != pair) continue;
-    const double n = size_N(c, settings);
+    const double n = size_of(c, settings);
     out.size_N += n;
     out.centre_m += (0.5 * n) * (c.point_a_m + c.point_b_m);
   }
@@ -39,7 +39,7 @@ Vec3d freed(Vec3d stretch_m, std::uint32_t pair, double all_N, std::span<const C
   Vec3d taken_m{};
   for (const Contact& c : contacts) {
     if (c.pair != pair) continue;
-    taken_m += (size_N(c, settings) / all_N * dot(c.normal, stretch_m)) * c.normal;
+    taken_m += (size_of(c, settings) / all_N * dot(c.normal, stretch_m)) * c.normal;
   }
   return stretch_m - taken_m;
 }
@@ -54,7 +54,7 @@ void add_spring(std::uint32_t pair, Vec3d arm_m, double all_N, const Settings& s
   for (const Contact& c : result.contacts) {
     if (c.pair != pair) continue;
     result.stiffness.add_square(vec6(c.normal, cross(arm_m, c.normal)),
-                                -k * size_N(c, settings) / all_N);
+                                -k * size_of(c, settings) / all_N);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../support/tiny_image.hpp"
+#include "rt_core/force/coupling.hpp"
 #include "rt_core/palpate.h"
 #include "rt_core/palpate_rt.hpp"
 
@@ -98,6 +99,116 @@ TEST(CInterface, gives_the_same_bits_as_the_engine) {
     EXPECT_EQ(palpate_get_contact(c_engine, c.contacts, &none), PALPATE_BAD_ARGUMENT);
   }
   EXPECT_GT(contacts, 0u);
+}
+
+/// An engine in C with its memory.
+struct CScene {
+  AlignedBytes a = ball(), b = block();
+  palpate_image images[2];
+  palpate_pair pairs[1] = {{0, 1}};
+  palpate_limits limits;
+  AlignedBytes memory{0};
+  palpate_engine* engine = nullptr;
+
+  CScene() {
+    EXPECT_EQ(palpate_open(a.data(), a.size(), &images[0]), PALPATE_OK);
+    EXPECT_EQ(palpate_open(b.data(), b.size(), &images[1]), PALPATE_OK);
+    palpate_default_limits(&limits);
+    const palpate_scene scene{images, 2, pairs, 1, 0};
+    palpate_settings settings;
+    palpate_default_settings(&settings);
+    settings.delta_m = 0.1;
+    memory = AlignedBytes(palpate_required_bytes(&scene, &limits, PALPATE_LEVELS));
+    EXPECT_EQ(palpate_create(&scene, &settings, &limits, memory.data(), memory.size(), &engine),
+              PALPATE_OK);
+  }
+  palpate_result tick(const palpate_pose& tool) {
+    const palpate_pose poses[2] = {tool, {{0, 0, 0}, {1, 0, 0, 0}}};
+    const palpate_budget budget{UINT64_MAX, nullptr, nullptr, 0};
+    palpate_result result;
+    EXPECT_EQ(palpate_tick(engine, poses, &budget, &result), PALPATE_OK);
+    return result;
+  }
+};
+
+TEST(CInterface, coupling_gives_the_same_bits_as_the_simulated_tool) {
+  constexpr double kPeriod_s = 0.001;
+  CScene scene;
+  palpate_coupling_settings settings;
+  palpate_default_coupling(&settings);
+  palpate_coupling coupling;
+  const palpate_pose start = c_pose_of(pose_of(0));
+  ASSERT_EQ(palpate_couple(&settings, &start, &coupling), PALPATE_OK);
+
+  const AlignedBytes a = ball(), b = block();
+  ImageView views[2];
+  ASSERT_EQ(validate(a, views[0]), Status::ok);
+  ASSERT_EQ(validate(b, views[1]), Status::ok);
+  const BodyPair pairs[1] = {{0, 1}};
+  const Scene same{views, pairs, 0};
+  AlignedBytes memory(required_bytes(same, {}));
+  Engine* engine = nullptr;
+  ASSERT_EQ(create(same, {.delta_m = 0.1}, {}, memory, engine), Status::ok);
+  force::VirtualTool tool({});
+  tool.reset(pose_of(0));
+
+  double pushed_N = 0;
+  for (int i = 0; i < kTicks; ++i) {
+    palpate_pose at;
+    ASSERT_EQ(palpate_coupled_pose(&coupling, &at), PALPATE_OK);
+    scene.tick(at);
+    const palpate_pose handle = c_pose_of(pose_of(i));
+    double force_N[3], torque_Nm[3];
+    ASSERT_EQ(
+        palpate_step_coupling(&coupling, scene.engine, &handle, kPeriod_s, force_N, torque_Nm),
+        PALPATE_OK);
+    const Pose poses[2] = {tool.pose(), {}};
+    TickResult r;
+    ASSERT_EQ(tick(*engine, poses, {}, r), Status::ok);
+    const Wrench w = tool.step(pose_of(i), r.wrench, r.stiffness, kPeriod_s);
+    EXPECT_EQ(std::memcmp(force_N, &w.force_N, sizeof force_N), 0);
+    EXPECT_EQ(std::memcmp(torque_Nm, &w.torque_Nm, sizeof torque_Nm), 0);
+    pushed_N += force_N[0];
+  }
+  EXPECT_GT(pushed_N, 0);
+}
+
+TEST(CInterface, foretells_the_wrench_nearby) {
+  CScene scene;
+  palpate_pose tool = c_pose_of({{1.35, 0, 0}, {}});
+  const palpate_result r = scene.tick(tool);
+  ASSERT_GT(r.contacts, 0u);
+  double force_N[3], torque_Nm[3];
+  ASSERT_EQ(palpate_predict(scene.engine, &tool, force_N, torque_Nm), PALPATE_OK);
+  EXPECT_EQ(force_N[0], r.force_N[0]);
+  tool.position_m[0] -= 1e-4;
+  ASSERT_EQ(palpate_predict(scene.engine, &tool, force_N, torque_Nm), PALPATE_OK);
+  EXPECT_GT(force_N[0], r.force_N[0]);
+}
+
+TEST(CInterface, refuses_unsound_couplings) {
+  CScene scene;
+  palpate_coupling_settings settings;
+  palpate_default_coupling(&settings);
+  palpate_coupling coupling;
+  palpate_pose pose = c_pose_of({});
+  for (double palpate_coupling_settings::*field :
+       {&palpate_coupling_settings::spring_N_per_m, &palpate_coupling_settings::inertia_kg_m2}) {
+    palpate_coupling_settings bad = settings;
+    bad.*field = 0;
+    EXPECT_EQ(palpate_couple(&bad, &pose, &coupling), PALPATE_BAD_ARGUMENT);
+  }
+  EXPECT_EQ(palpate_couple(&settings, nullptr, &coupling), PALPATE_BAD_ARGUMENT);
+  ASSERT_EQ(palpate_couple(&settings, &pose, &coupling), PALPATE_OK);
+  double force_N[3], torque_Nm[3];
+  EXPECT_EQ(palpate_step_coupling(&coupling, scene.engine, &pose, 0, force_N, torque_Nm),
+            PALPATE_BAD_ARGUMENT);
+  pose.position_m[1] = std::nan("");
+  const auto bad_pose = static_cast<palpate_status>(Status::bad_pose);
+  EXPECT_EQ(palpate_couple(&settings, &pose, &coupling), bad_pose);
+  EXPECT_EQ(palpate_step_coupling(&coupling, scene.engine, &pose, 0.001, force_N, torque_Nm),
+            bad_pose);
+  EXPECT_EQ(palpate_predict(scene.engine, &pose, force_N, torque_Nm), bad_pose);
 }
 
 TEST(CInterface, refuses_what_it_is_not_given) {

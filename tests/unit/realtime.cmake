@@ -4,6 +4,7 @@ palpate_test(realtime_test
     unit/realtime_histogram.cpp unit/realtime_safety.cpp unit/realtime_loop.cpp
     unit/realtime_wall.cpp unit/realtime_trace.cpp unit/realtime_thread.cpp
     unit/realtime_host_checks.cpp unit/realtime_passivity.cpp unit/realtime_server.cpp
+    unit/realtime_steady.cpp
   LIBS palpate_tools)
 
 # These run the executable.
@@ -12,3 +13,7 @@ palpate_test(realtime_process_test SOURCES unit/realtime_process.cpp
   LIBS palpate_rt nlohmann_json::nlohmann_json)
 add_dependencies(realtime_process_test palpate)
 target_compile_definitions(realtime_process_test PRIVATE PALPATE_EXECUTABLE="$<TARGET_FILE:palpate>")
+
+palpate_test(stability_map SOURCES unit/stability_map.cpp
+    "${PROJECT_SOURCE_DIR}/tools/bench/pressed_wall.cpp" "${PROJECT_SOURCE_DIR}/tools/palpate/stable_scene.cpp"
+  LIBS palpate_tools)

@@ -105,6 +105,25 @@ TEST_F(Run, pressing_hand_feels_a_force_within_the_scenes_limit) {
   EXPECT_EQ(j["state"], "rendering");
 }
 
+TEST_F(Run, contacts_on_a_thread_of_their_own_with_friction_and_damping_are_felt) {
+  for (const char* coupling : {"direct", "virtual"}) {
+    std::string scene = kScene;
+    scene.replace(
+        scene.find("max_force_N"), 0,
+        "contact_damping_N_s_per_m = 0.2\ncoupling = \"" + std::string(coupling) + "\"\n");
+    scene += "[[pair]]\na = \"tool\"\nb = \"base\"\nfriction = 0.3\n";
+    scene += "[run]\ncontact_rate_Hz = 200\n";
+    folder_.write("scene.toml", scene);
+    const test::Outcome outcome = run({"--seconds", "1.0", "--json", "--quiet"});
+    ASSERT_TRUE(outcome.status != 2 && outcome.status != 3) << outcome.err;
+    const json j = json::parse(outcome.out);
+    EXPECT_TRUE(j["contacts_late"].is_number()) << coupling;
+    if (!j["faults"].empty()) continue;  // the machine is too busy to hold the loop up
+    EXPECT_GT(j["force_N"]["max"].get<double>(), 0.01) << coupling;
+    EXPECT_LE(j["force_N"]["max"].get<double>(), 0.5) << coupling;
+  }
+}
+
 TEST_F(Run, text_names_what_a_reader_looks_for) {
   const test::Outcome outcome = run({"--seconds", "0.2"});
   ASSERT_TRUE(kept_or_late(outcome.status)) << outcome.err;

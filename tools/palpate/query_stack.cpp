@@ -30,6 +30,10 @@ QueryStack::QueryStack(const config::Scene& scene, Engine& engine, std::span<con
     top_ =
         &friction_.emplace(*top_, scene.pairs, scene.tool, scene.settings, poses, scene.friction);
   }
+  if (scene.coupling == config::Coupling::direct) {
+    const realtime::SteadyRates rates{scene.steady_force_N_per_s, scene.steady_torque_Nm_per_s};
+    top_ = &steady_.emplace(*top_, rates, 1 / scene.contact_rate_Hz.value_or(rate_Hz));
+  }
   if (scene.contact_rate_Hz) {
     const double most = std::ceil(kMostServerPeriods * rate_Hz / *scene.contact_rate_Hz);
     server_.emplace(*top_);

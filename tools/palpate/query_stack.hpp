@@ -10,10 +10,11 @@
 #include "tools/realtime/damped_query.hpp"
 #include "tools/realtime/engine_query.hpp"
 #include "tools/realtime/friction_query.hpp"
+#include "tools/realtime/steady_query.hpp"
 
 namespace palpate::cli {
 
-/// engine -> friction -> (another thread) -> coupling or damping.
+/// engine -> friction -> steadying -> (another thread) -> coupling or damping.
 class QueryStack {
  public:
   /// @param engine   outlives this
@@ -35,6 +36,7 @@ class QueryStack {
  private:
   realtime::EngineQuery engine_;
   std::optional<realtime::FrictionQuery> friction_;
+  std::optional<realtime::SteadyQuery> steady_;
   std::optional<realtime::ContactServer> server_;
   std::optional<realtime::ModelledQuery> modelled_;
   std::optional<realtime::CoupledQuery> coupled_;

@@ -229,6 +229,7 @@ void run(const RunOptions& options) {
   outcome.rate_Hz = rate_Hz;
   outcome.budget_us = scene.budget_us;
   outcome.report = loop->report();
+  if (queries.server() != nullptr) outcome.contacts_late = queries.server()->late();
   if (trace) {
     writing(options.trace, [&] { trace->commit(); });
     outcome.trace = options.trace;

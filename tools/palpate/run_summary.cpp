@@ -129,6 +129,9 @@ std::string host_lines(const RunOutcome& o) {
       line("page faults", grouped(page_faults(o.report)) + " in the loop") +
       line("scheduler",
            o.grant.scheduler + (o.grant.memory_locked ? ", memory locked" : ", memory not locked"));
+  if (o.contacts_late) {
+    text += line("contact thread", grouped(*o.contacts_late) + " queries ended late");
+  }
   if (o.trace) {
     text +=
         line("trace", o.trace->string() + ", " + grouped(o.telemetry_dropped) + " ticks dropped");
@@ -195,6 +198,7 @@ nlohmann::json run_json(const RunOutcome& o) {
   j["allocations"] = calls ? nlohmann::json(*calls) : nlohmann::json();
   j["page_faults"] = page_faults(r);
   j["page_faults_major"] = r.counted.major_faults;
+  j["contacts_late"] = o.contacts_late ? nlohmann::json(*o.contacts_late) : nlohmann::json();
   j["truncated"] = r.truncated;
   j["touching"] = r.touching;
   j["contacts_mean"] = mean(static_cast<double>(r.contacts), r.queried);

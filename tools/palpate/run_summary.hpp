@@ -19,6 +19,8 @@ struct RunOutcome {
   std::string device;
   double rate_Hz = 0;
   std::optional<double> budget_us;  ///< absent: the period's share alone
+  /// Contact queries that ended after their period; absent: the loop asked them itself.
+  std::optional<std::uint64_t> contacts_late;
   realtime::LoopReport report;
   realtime::HostGrant grant;
   std::optional<std::filesystem::path> trace;

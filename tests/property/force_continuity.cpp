@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a change of level or of budget does to the force: jaws ground on each other, so that levels
+// switch and the budget ends refinement in every tick.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "host_bake/models/models.hpp"
+#include "tests/support/baked_scene.hpp"
+#include "tests/support/effort.hpp"
+#include "tools/realtime/engine_query.hpp"
+#include "tools/realtime/steady_query.hpp"
+
+namespace palpate::test {
+namespace {
+
+constexpr double kPeriod_s = 1e-3;
+constexpr std::uint64_t kUnlimited = Budget{}.units;
+
+const BakedBody& upper() {
+  static const BakedBody b(bake::make_model("jaw_upper", 6000));
+  return b;
+}
+const BakedBody& lower() {
+  static const BakedBody b(bake::make_model("jaw_lower", 6000));
+  return b;
+}
+
+/// Grinds at a speed; the bite opens and closes by 0.2 mm.
+Pose ground(double speed_m_per_s, int tick) {
+  const double phase = speed_m_per_s * kPeriod_s * tick / 0.001;
+  return {{0.001 * std::sin(phase), 0.0005 * (1 - std::cos(phase)),
+           -0.00015 + 0.0002 * (1 - std::cos(0.3 * phase))},
+          turn({0, 0, 0.01 * std::sin(0.5 * phase)})};
+}
+
+struct Steps {
+  double force_N = 0, torque_Nm = 0;
+};
+
+Steps largest_steps(const Settings& settings, std::uint64_t units, double speed_m_per_s,
+                    bool steady) {
+  BakedScene scene({upper().view, lower().view}, {{0, 1}}, settings);
+  const Pose poses[2] = {};
+  realtime::EngineQuery contacts(*scene.engine, poses, 0);
+  realtime::SteadyQuery steadied(contacts, {}, kPeriod_s);
+  realtime::ContactQuery& query =
+      steady ? static_cast<realtime::ContactQuery&>(steadied) : contacts;
+  Steps steps;
+  Wrench before;
+  for (int i = 0; i < effort(400, 40); ++i) {
+    TickResult r;
+    EXPECT_EQ(query.tick(ground(speed_m_per_s, i), {.units = units}, r), Status::ok);
+    if (i > 0) {
+      steps.force_N = std::max(steps.force_N, norm(r.wrench.force_N - before.force_N));
+      steps.torque_Nm = std::max(steps.torque_Nm, norm(r.wrench.torque_Nm - before.torque_Nm));
+    }
+    before = r.wrench;
+  }
+  return steps;
+}
+
+class GroundJaws : public testing::TestWithParam<double> {};
+
+TEST_P(GroundJaws, steadied_force_steps_at_most_half_as_far_again_as_the_exact_one) {
+  const double speed_m_per_s = GetParam();
+  const Steps exact = largest_steps({.exact = true}, kUnlimited, speed_m_per_s, false);
+  for (const double s0 : {0.005, 0.05}) {
+    for (const std::uint64_t units : {kUnlimited, std::uint64_t{200}, std::uint64_t{60}}) {
+      const Steps felt = largest_steps({.s0 = s0}, units, speed_m_per_s, true);
+      EXPECT_LE(felt.force_N, 1.5 * exact.force_N) << "s0 " << s0 << ", " << units << " units";
+      EXPECT_LE(felt.torque_Nm, 1.5 * exact.torque_Nm) << "s0 " << s0 << ", " << units << " units";
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Speeds, GroundJaws, testing::Values(0.1, 0.3), [](const auto& tested) {
+  return std::to_string(static_cast<int>(1000 * tested.param)) + "_mm_per_s";
+});
+
+TEST(GroundJawsSlowly, without_interpolation_or_steadying_it_is_worse) {
+  const double interpolated = largest_steps({.s0 = 0.05}, kUnlimited, 0.1, false).force_N;
+  const double plain =
+      largest_steps({.s0 = 0.05, .interpolate = false}, kUnlimited, 0.1, false).force_N;
+  EXPECT_GT(plain, 1.3 * interpolated);
+  EXPECT_GT(interpolated, 1.1 * largest_steps({.s0 = 0.05}, kUnlimited, 0.1, true).force_N);
+}
+
+}  // namespace
+}  // namespace palpate::test
