@@ -135,8 +135,12 @@ int run(int argc, char** argv) {
     return error(std::string(e.what()) + ": palpate-sim: see 'palpate-sim --help'", kUsage);
   }
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { g_stop = true; });
+  return serve(options);
+}
+
+int run_and_report(int argc, char** argv) {
   try {
-    return serve(options);
+    return run(argc, argv);
   } catch (const config::ConfigError& e) {
     return error(e.what(), kUsage);
   } catch (const std::system_error& e) {
@@ -145,10 +149,12 @@ int run(int argc, char** argv) {
   } catch (const std::exception& e) {
     return error(std::string(e.what()) + ": internal: please report it with the command line",
                  kOther);
+  } catch (...) {
+    return error("unknown failure: internal: please report it with the command line", kOther);
   }
 }
 
 }  // namespace
 }  // namespace palpate::sim
 
-int main(int argc, char** argv) { return palpate::sim::run(argc, argv); }
+int main(int argc, char** argv) { return palpate::sim::run_and_report(argc, argv); }
