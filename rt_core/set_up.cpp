@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Set-up: the memory of an engine, its settings, and engines that have been moved.
+#include <initializer_list>
+
 #include "rt_core/base/arena.hpp"
 #include "rt_core/engine.hpp"
 #include "rt_core/palpate_rt.hpp"

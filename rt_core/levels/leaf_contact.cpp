@@ -97,7 +97,7 @@ bool witness_b_real(const PairState& pair, const Piece& b, const convex::Distanc
 LeafContact from_distance(const convex::Distance& d) noexcept {
   LeafContact contact;
   contact.found = true;
-  contact.distance = d.distance;
+  contact.distance = contact.upper_bound = d.distance;
   contact.lower_bound = d.lower_bound;
   contact.point_a = d.point_a;
   contact.point_b = d.point_b;
@@ -181,8 +181,7 @@ LeafContact overlapping(const PairState& pair, const Piece& a, const Piece& b,
                           hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a, cache, scratch);
   LeafContact contact;
   contact.found = true;
-  contact.distance = -p.depth;
-  contact.lower_bound = -p.depth;
+  contact.distance = contact.lower_bound = contact.upper_bound = -p.depth;
   contact.point_a = p.point_a;
   contact.point_b = p.point_b;
   contact.normal = p.normal;

@@ -15,6 +15,7 @@ struct LeafContact {
   bool found = false;
   double distance = 0;     ///< signed; the witnesses are this far apart
   double lower_bound = 0;  ///< of the true signed distance of the two patches
+  double upper_bound = 0;  ///< likewise
   Vec3d point_a{};
   Vec3d point_b{};
   Vec3d normal{};             ///< unit, from b to a

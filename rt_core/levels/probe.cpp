@@ -114,7 +114,7 @@ convex::Distance Probe::cull(const PairState& pair, Node& node) noexcept {
                        pair.delta + residual + rest_margin(pair, node), node.culling);
   note(d);
   tally_.count([](auto& counters) { ++counters.culling_queries; });
-  if (node.contact == 0 && !overlaps(d)) node.witness_a = vec_cast<float>(d.normal);
+  if (node.contact == 0 && !overlaps(d)) node.normal = vec_cast<float>(d.normal);
   prove(pair, node, overlaps(d) ? overlap_bound(pair, node) : d.lower_bound - residual);
   return d;
 }

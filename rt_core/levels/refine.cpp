@@ -36,19 +36,8 @@ void wait_for_split(Work& work, std::uint32_t index) noexcept {
 
 /// Until it is measured, a child stands where its parent did.
 void inherit(const Node& parent, Node& child) noexcept {
-  child.contact = parent.contact;
-  child.witness_a = parent.witness_a;
-  child.witness_b = parent.witness_b;
-  child.slack = parent.slack;
+  hand_over(parent, child);
   child.s_star = parent.s_star;
-}
-
-/// From b to a at the last query; any where none is known.
-Vec3d direction(const PairState& pair, const Node& node) noexcept {
-  if (node.contact == 0) return vec_cast<double>(node.witness_a);
-  const Vec3d on_b =
-      pair.b_in_a.rotation * vec_cast<double>(node.witness_b) + pair.b_in_a.translation;
-  return static_cast<double>(node.contact) * (vec_cast<double>(node.witness_a) - on_b);
 }
 
 void split(Work& work, std::uint32_t index) noexcept {
@@ -69,7 +58,7 @@ void split(Work& work, std::uint32_t index) noexcept {
     raise_mark(counters.most_nodes, work.tree.used_nodes());
   });
   note_blending(work, index);
-  const Vec3d towards_a = direction(pair, parent);
+  const Vec3d towards_a = vec_cast<double>(parent.normal);
   for (std::uint32_t c = parent.first_child; c != kNone; c = work.tree[c].next_sibling) {
     Node& child = work.tree[c];
     begin(pair, child, certain_now(pair, parent));

@@ -23,10 +23,11 @@ Vec3d mixed(double share, Vec3d own, Vec3d other) noexcept {
 
 void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
           const LeafContact& contact, Node& node) noexcept {
-  node.contact = contact.distance < 0 ? -1 : 1;
+  node.contact = 1;
   node.witness_a = vec_cast<float>(contact.point_a);
   node.witness_b = vec_cast<float>(transpose(pair.b_in_a.rotation) *
                                    (contact.point_b - pair.b_in_a.translation));
+  node.normal = vec_cast<float>(contact.normal);
   constexpr double kRoundingUp = 1 + 1e-6;
   node.slack =
       static_cast<float>(kRoundingUp * (pair.scale_a * static_cast<double>(a.surface_deviation) +
@@ -39,17 +40,18 @@ LeafContact remeasured(const PairState& pair, const Node& node) noexcept {
   contact.point_b =
       pair.b_in_a.rotation * vec_cast<double>(node.witness_b) + pair.b_in_a.translation;
   const Vec3d apart = contact.point_a - contact.point_b;
-  const double gap = norm(apart);
-  const double sign = node.contact;
-  contact.found = gap > 0;
-  contact.distance = sign * gap;
-  if (contact.found) contact.normal = (sign / gap) * apart;
+  contact.found = true;
+  contact.normal = vec_cast<double>(node.normal);
+  contact.upper_bound = norm(apart);
+  const double along = dot(apart, contact.normal);
+  const double slid = norm(apart - along * contact.normal);
+  contact.distance = along >= 0 ? contact.upper_bound : along + slid;
   return contact;
 }
 
 bool Report::add(const PairState& pair, Node& node, const LeafContact& contact) noexcept {
   const double distance_m = contact.distance * pair.unit_m;
-  const double upper_m = distance_m + static_cast<double>(node.slack) * pair.unit_m;
+  const double upper_m = (contact.upper_bound + static_cast<double>(node.slack)) * pair.unit_m;
   if (upper_m < upper_m_) upper_m_ = upper_m;
   if (count_ == contacts_.size()) return false;
   node.report = count_;

@@ -20,8 +20,19 @@ struct QueryResult;
 void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
           const LeafContact& contact, Node& node) noexcept;
 
-/// The contact kept in a node, measured again at its material points. found is false where these
-/// coincide.
+/// Gives a node the contact kept in another one, in or above whose subtree it is.
+inline void hand_over(const Node& from, Node& to) noexcept {
+  to.contact = from.contact;
+  to.witness_a = from.witness_a;
+  to.witness_b = from.witness_b;
+  to.normal = from.normal;
+  to.slack = from.slack;
+}
+
+/// The contact kept in a node, measured again at its material points, with its normal as it turned
+/// with a. While these are apart along the normal it is as long as they are; overlap is what they
+/// overlap along the normal, less what they have slid: so it ends where the bodies have parted or
+/// slid on. The points themselves bound the true distance from above.
 LeafContact remeasured(const PairState& pair, const Node& node) noexcept;
 
 class Report {

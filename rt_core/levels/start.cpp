@@ -9,6 +9,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// roots: an old front says nothing about a far pose.
 constexpr double kJumpRadius = 0.05;
 constexpr double kJumpDelta = 2;
+/// Of the distance of two spheres, in units.
+constexpr double kSphereRounding = 1e-9;
 /// The front may be this much larger than what the budget is expected to measure: the estimate
 /// wavers, and a front that is cut back every other tick would be felt.
 constexpr double kFrontOverBudget = 1.25;
@@ -48,11 +50,38 @@ void place(Work& work, PairState& pair) noexcept {
   }
 }
 
+/// Where the motion bound has run out the spheres may still do: they cost no query.
+void renew(Work& work, Node& node) noexcept {
+  const PairState& pair = work.pair_of(node);
+  if (!work.rules.motion_bounds) return begin(pair, node, -kInfinity);
+  if (!work.is_near(node)) return;
+  const double spheres = sphere_distance(pair, piece_a(pair, node), piece_b(pair, node));
+  if (spheres < pair.delta + kSphereRounding) return;
+  prove(pair, node, spheres - kSphereRounding);
+  set_rest(pair, node, spheres - kSphereRounding);
+  node.contact = 0;
+}
+
 double count_near(const Work& work) noexcept {
   double near = 0;
   for (const std::uint32_t index : work.tree.front())
     near += work.is_near(work.tree[index]) ? 1 : 0;
   return near;
+}
+
+/// Every ancestor gets the nearest contact below it, so that none is lost to a cut.
+void carry_contacts_up(Work& work) noexcept {
+  for (const std::uint32_t index : work.tree.front()) {
+    const Node& node = work.tree[index];
+    if (node.contact == 0) continue;
+    const PairState& pair = work.pair_of(node);
+    const double distance = remeasured(pair, node).distance;
+    for (std::uint32_t p = node.parent; p != kNone; p = work.tree[p].parent) {
+      Node& above = work.tree[p];
+      if (above.contact != 0 && remeasured(pair, above).distance <= distance) break;
+      hand_over(node, above);
+    }
+  }
 }
 
 /// Every near front node gives way to its parent. False where all are roots.
@@ -68,11 +97,16 @@ bool raise_near(Work& work) noexcept {
   return raised;
 }
 
+bool is_affordable(const Work& work, double most) noexcept {
+  return static_cast<double>(work.tree.front().size()) <= most || count_near(work) <= most;
+}
+
 void cut_back(Work& work) noexcept {
   const double most = kFrontOverBudget * work.meter.queries_affordable(work.memory.query_ns);
+  if (is_affordable(work, most)) return;
+  carry_contacts_up(work);
   for (std::uint32_t round = 0; round < 2 * image::kMaxLevels; ++round) {
-    if (static_cast<double>(work.tree.front().size()) <= most || count_near(work) <= most) return;
-    if (!raise_near(work)) return;
+    if (!raise_near(work) || is_affordable(work, most)) return;
   }
 }
 
@@ -85,7 +119,7 @@ void start(Work& work) noexcept {
     Node& node = work.tree[index];
     clear(node, kOfThisTick);
     node.report = kNone;
-    if (!work.rules.motion_bounds) begin(work.pair_of(node), node, -kInfinity);
+    renew(work, node);
     wait_if_near(work, index);
   }
 }

@@ -120,7 +120,7 @@ SurfaceStop probe_surface(Work& work, Node& node) noexcept {
               is_original(*pair.image_b, node.piece_b,
                           feature_of(*pair.image_b, b, d.vertices_b, d.count_b));
   out.contact.found = out.stops;
-  out.contact.distance = d.distance;
+  out.contact.distance = out.contact.upper_bound = d.distance;
   out.contact.lower_bound = d.lower_bound - residual(pair, node);
   out.contact.point_a = d.point_a;
   out.contact.point_b = d.point_b;

@@ -29,9 +29,9 @@ struct alignas(64) Node {
                       ///< pieces nor what is below them give a contact
   float certain = 0;  ///< lower bound of the distance of the two pieces' original descendants
   float reach = 0;    ///< farthest point of piece a from the centre of body a: lever arm of turning
-  std::uint16_t pair = 0;   ///< body pair
-  std::int8_t contact = 0;  ///< a query, perhaps of an ancestor, gave a contact at the witnesses: 1
-                            ///< apart, -1 overlapping; 0 none
+  std::uint16_t pair = 0;  ///< body pair
+  std::uint8_t contact =
+      0;  ///< 1: a query, perhaps of an ancestor, gave a contact at the witnesses
   std::uint8_t flags = 0;
   std::uint32_t piece_a = 0;
   std::uint32_t piece_b = 0;
@@ -42,12 +42,13 @@ struct alignas(64) Node {
   std::uint32_t front_slot = kNone;     ///< place in the front; kNone inside the tree
   std::uint32_t blending_slot = kNone;  ///< place among the blending nodes; kNone for others
   // Of the last query.
-  Vec3f witness_a{};  ///< in the coordinates of a and of b; without a contact witness_a is the
-                      ///< separating direction instead
-  Vec3f witness_b{};
-  float slack = 0;   ///< the original surfaces are at most this farther apart than the witnesses
-  float s_star = 0;  ///< eq. 7; an ancestor's until the node is measured
-  float excess = 0;  ///< Detail::excess
+  Vec3f witness_a{};  ///< of the contact, in the coordinates of a
+  Vec3f witness_b{};  ///< in the coordinates of b
+  Vec3f normal{};     ///< from b to a, in the coordinates of a: of the contact; without one, of the
+                      ///< last query that parted the hulls, zero before the first
+  float slack = 0;    ///< the original surfaces are at most this farther apart than the witnesses
+  float s_star = 0;   ///< eq. 7; an ancestor's until the node is measured
+  float excess = 0;   ///< Detail::excess
   std::uint32_t report = kNone;  ///< its contact of this tick; inside the tree: the last tick in
                                  ///< which it was mixed
   // Warm starts.

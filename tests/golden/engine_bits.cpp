@@ -27,18 +27,18 @@ struct Case {
 constexpr double kDelta_m = 0.05;
 constexpr std::uint64_t kUnlimited = Budget{}.units;
 const Case kCases[] = {
-    {"exact", {.delta_m = kDelta_m, .exact = true}, kUnlimited, 0x73de5ae68dc7beaa},
-    {"exact, 40 units", {.delta_m = kDelta_m, .exact = true}, 40, 0x13986cd97f97d4b5},
-    {"simplified", {.delta_m = kDelta_m, .s0 = 0.02}, kUnlimited, 0x03d0df2502098e62},
-    {"simplified, 40 units", {.delta_m = kDelta_m, .s0 = 0.02}, 40, 0xee1a86edc15da5d7},
+    {"exact", {.delta_m = kDelta_m, .exact = true}, kUnlimited, 0xa316e3713c66e891},
+    {"exact, 40 units", {.delta_m = kDelta_m, .exact = true}, 40, 0xacfa01c5f9c8c0b2},
+    {"simplified", {.delta_m = kDelta_m, .s0 = 0.02}, kUnlimited, 0x8f1d7e87823b308c},
+    {"simplified, 40 units", {.delta_m = kDelta_m, .s0 = 0.02}, 40, 0xad414a7f4d1dbf9f},
     {"stop on surface, by ratio",
      {.delta_m = kDelta_m, .s0 = 0.005, .order = Order::ratio, .stop_on_surface = true},
      200,
-     0x9d1bb1acb240f414},
+     0x73111d77fce10635},
     {"paper's bounds",
      {.delta_m = kDelta_m, .s0 = 0.02, .bounds = Bounds::paper},
      200,
-     0xba4e01b8efb4610e},
+     0xc2b12c54eb6a5164},
 };
 constexpr int kTicks = 200;
 

@@ -2,6 +2,7 @@
 // palpate.h gives what palpate_rt.hpp gives, and refuses what it is not given.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -74,7 +75,15 @@ TEST(CInterface, gives_the_same_bits_as_the_engine) {
       PALPATE_OK);
 
   std::uint32_t contacts = 0;
+  AlignedBytes moved;
   for (int i = 0; i < kTicks; ++i) {
+    if (i == kTicks / 2) {  // the engine goes on elsewhere
+      moved = c_memory;
+      std::fill(c_memory.begin(), c_memory.end(), std::byte{0xa5});
+      ASSERT_EQ(palpate_restore(&c_scene, &c_limits, PALPATE_LEVELS, moved.data(), moved.size(),
+                                &c_engine),
+                PALPATE_OK);
+    }
     const Pose poses[2] = {pose_of(i), {}};
     const palpate_pose c_poses[2] = {c_pose_of(poses[0]), c_pose_of(poses[1])};
     TickResult r;
@@ -228,6 +237,8 @@ TEST(CInterface, refuses_what_it_is_not_given) {
   palpate_default_settings(&settings);
   palpate_engine* engine = nullptr;
   EXPECT_EQ(palpate_create(&nothing, &settings, &limits, &image, sizeof image, &engine),
+            PALPATE_BAD_ARGUMENT);
+  EXPECT_EQ(palpate_restore(&nothing, &limits, 0, &image, sizeof image, &engine),
             PALPATE_BAD_ARGUMENT);
   EXPECT_EQ(palpate_configure(nullptr, &settings), PALPATE_BAD_ARGUMENT);
   EXPECT_EQ(palpate_tick(nullptr, nullptr, nullptr, nullptr), PALPATE_BAD_ARGUMENT);

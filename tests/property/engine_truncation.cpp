@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a budget that is too small may cost: detail, never a contact that the certificate does not
+// speak of.
+#include <gtest/gtest.h>
+
+#include "tests/support/answers.hpp"
+#include "tests/support/brute_force.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace palpate::test {
+namespace {
+
+constexpr double kDelta = 0.05;
+
+bake::BakeOptions coarse() {
+  bake::BakeOptions options;
+  options.stop.stop_resolution = 1.5;
+  return options;
+}
+
+// A ring about a ball: contacts on several sides at once.
+struct Bodies {
+  BakedBody a{bumpy_ball(20, 24, 0.62), coarse()};
+  BakedBody b{ring(28, 14, 1, 0.35), coarse()};
+};
+
+const Bodies& bodies() {
+  static const Bodies both;
+  return both;
+}
+
+Pose motion(int i) {
+  return {{0.03 * std::sin(0.05 * i), 0.03 * std::cos(0.05 * i), 0.004 * std::sin(0.2 * i)},
+          turn({0.004 * i, 0.002 * i, 0.006 * i})};
+}
+
+double least_of(const PlacedTriangles& a, const std::vector<std::size_t>& region,
+                const PlacedTriangles& b) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::size_t i : region) least = distance_from(a, i, b, least);
+  return least;
+}
+
+double to_region(const PlacedTriangles& a, const std::vector<std::size_t>& region, Vec3d p) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const std::size_t t : region)
+    best = std::min(best, CGAL::squared_distance(a.triangles[t], Kernel::Point_3(p.x, p.y, p.z)));
+  return std::sqrt(best);
+}
+
+/// Each region nearer than delta has a contact, or is no nearer than the certificate leaves open.
+void expect_no_region_lost(const TickResult& r, const PlacedTriangles& a,
+                           const PlacedTriangles& b) {
+  const double nearest = r.contacts.empty() ? kDelta : r.min_distance_m;
+  const double open_from = nearest - r.certificate.error_bound_m - 2e-6;
+  for (const auto& region : near_regions(bodies().a.mesh, a, b, 0.98 * kDelta)) {
+    double apart = std::numeric_limits<double>::infinity();
+    for (const Contact& c : r.contacts) apart = std::min(apart, to_region(a, region, c.point_a_m));
+    if (apart > kDelta) {
+      EXPECT_GE(least_of(a, region, b), open_from)
+          << "a region of " << region.size() << " triangles";
+    }
+  }
+}
+
+TEST(EngineTruncation, every_near_region_has_a_contact_or_is_within_the_certificate) {
+  const PlacedTriangles fixed(bodies().b.mesh, {});
+  for (const double s0 : {0.0, 0.02}) {
+    for (const std::uint64_t units : {1u, 4u, 16u, 64u, 256u, 1024u}) {
+      BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}},
+                       {.delta_m = kDelta, .s0 = s0, .cluster_radius_m = 0.1});
+      for (int i = 0; i < 40; ++i) {
+        const Pose poses[2] = {motion(i), {}};
+        const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
+        expect_no_region_lost(r, PlacedTriangles(bodies().a.mesh, poses[0]), fixed);
+      }
+    }
+  }
+}
+
+/// Ticks in contact of the first `ticks`, and those of them in which one is felt. The first tick
+/// has no budget.
+struct Felt {
+  int touching = 0;
+  int felt = 0;
+};
+
+Felt feel(std::uint64_t units, int ticks) {
+  const PlacedTriangles fixed(bodies().b.mesh, {});
+  BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}},
+                   {.delta_m = kDelta, .s0 = 0.02, .cluster_radius_m = 0.1});
+  Felt out;
+  for (int i = 0; i < ticks; ++i) {
+    const Pose poses[2] = {motion(i), {}};
+    const Budget budget = i == 0 ? Budget{} : Budget{.units = units};
+    const TickResult r = tick_or_fail(*scene.engine, poses, budget);
+    if (distance_of(PlacedTriangles(bodies().a.mesh, poses[0]), fixed) > 0.5 * kDelta) continue;
+    ++out.touching;
+    out.felt += r.contacts.empty() ? 0 : 1;
+  }
+  return out;
+}
+
+// Once found, a contact is felt at its last points while these are within reach of each other,
+// whatever the budget.
+TEST(EngineTruncation, contact_that_was_found_outlives_the_budget) {
+  for (const std::uint64_t units : {0u, 1u, 2u, 4u}) {
+    const Felt few = feel(units, 6);
+    EXPECT_GE(few.touching, 5);
+    EXPECT_EQ(few.felt, few.touching) << units << " units";
+  }
+}
+
+// From a budget on that leads down to one new contact a tick, it is felt for ever.
+TEST(EngineTruncation, contact_is_felt_for_ever_within_a_few_queries_a_tick) {
+  for (const std::uint64_t units : {8u, 16u, 32u, 64u, 128u}) {
+    const Felt all = feel(units, 40);
+    EXPECT_GT(all.touching, 10);
+    EXPECT_EQ(all.felt, all.touching) << units << " units";
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test
