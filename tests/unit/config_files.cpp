@@ -35,7 +35,8 @@ TEST_P(ExampleScene, Loads_with_a_path_that_closes) {
 
 INSTANTIATE_TEST_SUITE_P(All, ExampleScene,
                          ::testing::Values("jaws.toml", "golf.toml", "ball_joint.toml",
-                                           "ellipsoid_golf.toml"));
+                                           "ellipsoid_golf.toml", "golf_balls.toml",
+                                           "ball_shell.toml", "screw_nut.toml"));
 
 }  // namespace
 }  // namespace palpate::config

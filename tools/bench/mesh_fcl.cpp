@@ -3,6 +3,7 @@
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>
+#include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 
 #include <vector>
@@ -50,6 +51,12 @@ double FclPair::distance(const Pose& a, const Pose& b) const {
   const fcl::DistanceRequest<double> request(false);
   fcl::DistanceResult<double> result;
   return fcl::distance(&models_->a, transform(a), &models_->b, transform(b), request, result);
+}
+
+std::size_t FclPair::crossings(const Pose& a, const Pose& b, std::size_t most) const {
+  const fcl::CollisionRequest<double> request(most, true);
+  fcl::CollisionResult<double> result;
+  return fcl::collide(&models_->a, transform(a), &models_->b, transform(b), request, result);
 }
 
 }  // namespace palpate::bench

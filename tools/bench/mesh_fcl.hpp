@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The distance of two meshes by FCL, to stand beside the region engine's on the same poses.
+// Distance and collision of two meshes by FCL, to stand beside Palpate's on the same poses.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "host_bake/mesh/mesh.hpp"
@@ -16,6 +17,9 @@ class FclPair {
   ~FclPair();
   /// One least distance, in metres, without points; exact, cold as every query of FCL.
   [[nodiscard]] double distance(const Pose& a, const Pose& b) const;
+
+  /// How many pairs of triangles cross; at most `most` are looked for.
+  [[nodiscard]] std::size_t crossings(const Pose& a, const Pose& b, std::size_t most) const;
 
  private:
   struct Models;

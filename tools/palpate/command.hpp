@@ -52,11 +52,13 @@ bake::Progress progress(bool quiet);
 CLI::Validator number_between(double min, double max);
 
 void add_make_model(CLI::App& app);
+void add_make_motion(CLI::App& app);
 void add_check(CLI::App& app);
 void add_bake(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_emit(CLI::App& app);
 void add_replay(CLI::App& app);
+void add_sweep(CLI::App& app);
 void add_run(CLI::App& app);
 void add_report(CLI::App& app);
 void add_devices(CLI::App& app);

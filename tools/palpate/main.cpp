@@ -24,11 +24,13 @@ namespace {
 constexpr std::initializer_list<void (*)(CLI::App&)> kCommands = {
     // clang-format off
     add_make_model,
+    add_make_motion,
     add_check,
     add_bake,
     add_inspect,
     add_emit,
     add_replay,
+    add_sweep,
     add_run,
     add_report,
     add_devices,

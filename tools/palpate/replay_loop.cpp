@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/palpate/replay_loop.hpp"
 
+#include <time.h>
+
 #include <algorithm>
 #include <limits>
 #include <string>
 
-#include "hal/clock.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/scene_engine.hpp"
 
@@ -14,18 +15,26 @@ namespace {
 
 constexpr std::size_t kShowEvery = 64;  // ticks
 
+/// @param clock  of a clockid_t
+std::uint64_t now_ns(void* clock) {
+  timespec now{};
+  clock_gettime(*static_cast<clockid_t*>(clock), &now);
+  return std::uint64_t(now.tv_sec) * 1'000'000'000 + std::uint64_t(now.tv_nsec);
+}
+
 class Replay {
  public:
   Replay(const config::Scene& scene, const PoseTrack& track, const ReplayOptions& options)
       : scene_(scene),
         track_(track),
         engine_(scene),
-        unlimited_(!options.budget_units && !scene.budget_us) {
+        unlimited_(!options.budget_units && !scene.budget_us),
+        clock_(options.processor_time ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC) {
     if (options.budget_units) budget_.units = *options.budget_units;
     if (scene.budget_us) budget_ns_ = static_cast<std::uint64_t>(*scene.budget_us * 1e3);
     if (budget_ns_ || options.profile) {
-      budget_.clock_ns = [](void* clock) { return static_cast<hal::Clock*>(clock)->now_ns(); };
-      budget_.clock_context = static_cast<hal::Clock*>(&clock_);
+      budget_.clock_ns = now_ns;
+      budget_.clock_context = &clock_;
     }
   }
 
@@ -61,11 +70,11 @@ class Replay {
 
   TickResult timed_tick(std::size_t i, std::span<const Pose> poses, std::uint64_t& out_ns) {
     TickResult result;
-    const std::uint64_t start_ns = clock_.now_ns();
+    const std::uint64_t start_ns = now_ns(&clock_);
     budget_.deadline_ns =
         budget_ns_ ? start_ns + *budget_ns_ : std::numeric_limits<std::uint64_t>::max();
     const Status status = tick(engine_.engine(), poses, budget_, result);
-    out_ns = clock_.now_ns() - start_ns;
+    out_ns = now_ns(&clock_) - start_ns;
     if (status != Status::ok) {
       throw Failure(kOther, std::string("the engine failed (") + describe(status) + ")",
                     scene_.file.string() + ", tick " + std::to_string(i),
@@ -88,7 +97,7 @@ class Replay {
   const PoseTrack& track_;
   SceneEngine engine_;
   bool unlimited_;
-  hal::MonotonicClock clock_;
+  clockid_t clock_;
   Budget budget_;
   std::optional<std::uint64_t> budget_ns_;
 };

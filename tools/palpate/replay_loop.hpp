@@ -19,7 +19,10 @@ namespace palpate::cli {
 struct ReplayOptions {
   std::optional<std::uint64_t> budget_units;  ///< beside the scene's budget_us; absent: unlimited
   unsigned repeat = 1;                        ///< >= 1
-  bool profile = false;                       ///< give the engine a clock, for its stages' times
+  /// Times and budgets in processor time of the thread, which does not count when others have the
+  /// processor; else in real time.
+  bool processor_time = false;
+  bool profile = false;  ///< give the engine a clock, for its stages' times
 };
 
 /// What a replay tells while it runs; each may be empty.

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/palpate/sweep_settings.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace palpate::cli {
+namespace {
+
+std::string text(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+void add(std::vector<SweepSetting>& out, const SweepSetting& setting) {
+  if (std::find(out.begin(), out.end(), setting) == out.end()) out.push_back(setting);
+}
+
+void add_levels(std::vector<SweepSetting>& out, const SweepAxes& axes, double delta_m) {
+  SweepSetting s{.engine = EngineKind::levels, .delta_m = delta_m};
+  for (const Bounds bounds : axes.bounds) {
+    for (const double s0 : axes.s0) {
+      for (const double kappa : axes.kappa) {
+        for (const bool interpolate : axes.interpolate) {
+          for (const double budget_us : axes.budget_us) {
+            s.bounds = bounds;
+            s.s0 = s0;
+            s.kappa = kappa;
+            s.interpolate = interpolate;
+            s.budget_us = budget_us;
+            add(out, s);
+          }
+        }
+      }
+    }
+  }
+}
+
+void add_regions(std::vector<SweepSetting>& out, const SweepAxes& axes, double delta_m) {
+  SweepSetting s{.engine = EngineKind::regions, .delta_m = delta_m};
+  for (const double tolerance_N : axes.force_tolerance_N) {
+    for (const double budget_us : axes.budget_us) {
+      s.force_tolerance_N = tolerance_N;
+      s.budget_us = budget_us;
+      const bool same_as_exact = tolerance_N == 0 && std::isinf(budget_us);
+      if (!same_as_exact) add(out, s);
+    }
+  }
+}
+
+SweepSetting exact(EngineKind engine, Bounds bounds, double delta_m) {
+  return {.engine = engine, .exact = true, .bounds = bounds, .delta_m = delta_m};
+}
+
+}  // namespace
+
+std::vector<SweepSetting> expand(const SweepAxes& axes) {
+  const auto wants = [&](EngineKind kind) {
+    return std::find(axes.engines.begin(), axes.engines.end(), kind) != axes.engines.end();
+  };
+  std::vector<SweepSetting> out;
+  for (const double delta_m : axes.delta_m) {
+    if (wants(EngineKind::levels)) {
+      add(out, exact(EngineKind::levels, Bounds::tight, delta_m));
+      add(out, exact(EngineKind::levels, Bounds::paper, delta_m));
+    }
+    if (wants(EngineKind::regions)) add(out, exact(EngineKind::regions, Bounds::tight, delta_m));
+    if (wants(EngineKind::levels)) add_levels(out, axes, delta_m);
+    if (wants(EngineKind::regions)) add_regions(out, axes, delta_m);
+  }
+  return out;
+}
+
+std::string id_of(const SweepSetting& s) {
+  const bool levels = s.engine == EngineKind::levels;
+  std::string id = levels ? "levels" : "regions";
+  if (s.exact) id += "-exact";
+  if (!s.exact && levels) {
+    id += "-s0_" + text(s.s0);
+    if (std::isfinite(s.kappa)) id += "-kappa_" + text(s.kappa);
+    if (!s.interpolate) id += "-not_interpolated";
+  }
+  if (!s.exact && !levels) id += "-tolerance_" + text(s.force_tolerance_N);
+  if (levels && s.bounds == Bounds::paper) id += "-paper_bounds";
+  if (std::isfinite(s.budget_us)) id += "-budget_" + text(s.budget_us);
+  return id + "-delta_" + text(s.delta_m);
+}
+
+SweepSetting reference_of(const SweepSetting& setting) {
+  return exact(setting.engine, Bounds::tight, setting.delta_m);
+}
+
+config::Scene with_setting(const config::Scene& scene, const SweepSetting& s) {
+  config::Scene out = scene;
+  out.settings.engine = s.engine;
+  out.settings.exact = s.exact;
+  out.settings.s0 = s.s0;
+  out.settings.force_tolerance_N = s.force_tolerance_N;
+  out.settings.interpolate = s.interpolate;
+  out.settings.bounds = s.bounds;
+  out.settings.delta_m = s.delta_m;
+  out.kappa.reset();
+  if (std::isfinite(s.kappa)) out.kappa = s.kappa;
+  out.budget_us.reset();
+  if (std::isfinite(s.budget_us)) out.budget_us = s.budget_us;
+  return out;
+}
+
+}  // namespace palpate::cli
