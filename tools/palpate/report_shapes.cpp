@@ -46,6 +46,7 @@ Shape shape_of(const ImageView& image, std::uint32_t most) {
 PieceShapes piece_shapes(const ImageView& image,
                          const std::map<std::uint32_t, std::uint32_t>& wanted, std::size_t most) {
   std::vector<std::uint32_t> order;
+  order.reserve(wanted.size());
   for (const auto& [piece, times] : wanted) order.push_back(piece);
   // What is shown most often must not be what does not fit.
   std::stable_sort(order.begin(), order.end(),
