@@ -97,16 +97,35 @@ class Report {
     const Witness& witness = state_of(item).witness;
     const double distance = norm(apart);
     constexpr double kTouching = 1e-9;  // a direction of so short a vector is rounding
-    const Vec3d normal = distance > kTouching ? (1 / distance) * apart : facing(pair, witness);
     // Touching, the outward normal of b's is right whichever side a comes from.
-    const bool flip = memory_.containment[item.pair].inside && distance > kTouching;
+    const Vec3d outward = facing(pair, witness);
+    const Vec3d normal = distance > kTouching ? (1 / distance) * apart : outward;
+    const bool flip = distance > kTouching && (memory_.containment[item.pair].inside ||
+                                               is_behind(item, dot(normal, outward)));
     const double side = flip ? -1 : 1;
     add(item, {on_a, on_a - apart, side * normal, side * distance,
                pair.image_a->region_triangles[witness.a].piece,
                pair.image_b->region_triangles[witness.b].piece});
   }
 
-  /// Where two triangles touch: the outward normal of b's.
+  /// The region is nearest to the inner side of a face of b: it has passed through, beside others
+  /// of its body that cross the surface or not. Not told where the interval is so open that the
+  /// nearest may be a face before this one, on a wall thinner than the interval; nor from a surface
+  /// that is open to its back.
+  bool is_behind(const Active& item, double cosine) noexcept {
+    constexpr double kStraight = -0.99;  // at an edge or a corner a normal of one face says little
+    constexpr double kMostOpen = 0.1;    // of delta
+    const PairState& pair = pair_of(item);
+    if (cosine > kStraight || static_cast<double>(item.width) > kMostOpen * pair.delta) {
+      return false;
+    }
+    const ImageView& b = *pair.image_b;
+    const std::uint32_t piece = b.region_triangles[state_of(item).witness.b].piece;
+    return (b.header->flags & static_cast<std::uint32_t>(image::HeaderFlag::open)) == 0 &&
+           (b.pieces[piece].flags & static_cast<std::uint32_t>(image::PieceFlag::back_open)) == 0;
+  }
+
+  /// The outward normal of the triangle of b.
   static Vec3d facing(const PairState& pair, const Witness& witness) noexcept {
     const RegionTriangle& t = pair.image_b->region_triangles[witness.b];
     const Vec3d p = corner(t, 0, 1);

@@ -10,7 +10,8 @@ namespace palpate::regions {
 
 /// Appends a contact to memory.contacts for every active region whose witness, measured at the
 /// present poses, is nearer than delta: closest points and normal, or depth and direction of
-/// overlap where its triangles cross.
+/// overlap where its triangles cross. A region that has passed through a face without crossing it
+/// any more is as deep as it is far from that face.
 ///
 /// Witnesses are placed in double and compared relative to the pair, sixteen at a time. Cost:
 /// O(active), and for every crossing region what find_crossings() and deepest() take.
