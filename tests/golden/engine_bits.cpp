@@ -5,12 +5,12 @@
 //
 //   engine_bits IMAGE    prints what it found; exit status 1 where it is not what it has to be
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
+#include <memory>
 #include <new>
 #include <span>
-#include <vector>
 
 #include "rt_core/palpate_rt.hpp"
 
@@ -74,9 +74,15 @@ struct Free {
   void operator()(std::byte* p) const { ::operator delete[](p, std::align_val_t{64}); }
 };
 
-std::span<std::byte> aligned(std::size_t bytes) {
-  return {new (std::align_val_t{64}) std::byte[bytes], bytes};  // lives as long as the program
-}
+/// As images and engines want it.
+struct Memory {
+  explicit Memory(std::size_t bytes)
+      : owned(new (std::align_val_t{64}) std::byte[bytes]), size(bytes) {}
+  [[nodiscard]] std::span<std::byte> bytes() const { return {owned.get(), size}; }
+
+  std::unique_ptr<std::byte[], Free> owned;
+  std::size_t size;
+};
 
 std::uint64_t hash_of(const ImageView& image, const Case& test) {
   const ImageView bodies[2] = {image, image};
@@ -84,8 +90,8 @@ std::uint64_t hash_of(const ImageView& image, const Case& test) {
   const Scene scene{bodies, pairs, 0};
   const Limits limits{.nodes = 1u << 14, .contacts = 1u << 10, .clusters = 1u << 8};
   Engine* engine = nullptr;
-  const std::span<std::byte> memory = aligned(required_bytes(scene, limits));
-  if (create(scene, test.settings, limits, memory, engine) != Status::ok) return 0;
+  const Memory memory(required_bytes(scene, limits));
+  if (create(scene, test.settings, limits, memory.bytes(), engine) != Status::ok) return 0;
   Hash hash;
   for (int i = 0; i < kTicks; ++i) {
     const Pose poses[2] = {pose_of(i), {}};
@@ -102,10 +108,9 @@ std::uint64_t hash_of(const ImageView& image, const Case& test) {
   return hash.value();
 }
 
-bool open(const char* file, ImageView& out) {
+bool open(const char* file, std::span<std::byte> room, ImageView& out) {
   std::FILE* in = std::fopen(file, "rb");
   if (in == nullptr) return false;
-  const std::span<std::byte> room = aligned(1u << 20);
   const std::size_t size = std::fread(room.data(), 1, room.size(), in);
   std::fclose(in);
   return validate(room.first(size), out) == Status::ok;
@@ -115,8 +120,9 @@ bool open(const char* file, ImageView& out) {
 }  // namespace palpate
 
 int main(int argc, char** argv) {
+  const palpate::Memory room(1u << 20);
   palpate::ImageView image;
-  if (argc != 2 || !palpate::open(argv[1], image)) {
+  if (argc != 2 || !palpate::open(argv[1], room.bytes(), image)) {
     std::fputs("usage: engine_bits IMAGE\n", stderr);
     return 2;
   }
