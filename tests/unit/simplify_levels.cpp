@@ -18,7 +18,7 @@ namespace {
 using namespace test;
 
 constexpr SimplifyOptions kToTheEnd{0.0, 0};
-constexpr std::size_t kTriangles = palpate::test::effort<std::size_t>(3000, 1000);
+constexpr std::size_t kTriangles = palpate::test::effort<std::size_t>(3000, 2000);
 
 TEST(Simplify_models, hold_all_invariants_at_every_level) {
   for (const ModelInfo& model : models()) {
