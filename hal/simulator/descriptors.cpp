@@ -63,7 +63,8 @@ Bytes configuration_of(std::uint8_t interfaces, const Bytes& rest) {
   constexpr std::size_t kHeadBytes = 9;
   const std::size_t total = kHeadBytes + rest.size();
   Bytes all{kHeadBytes, kConfiguration, low(total), high(total), interfaces, 1, 0, 0x80, 50};
-  all.insert(all.end(), rest.begin(), rest.end());
+  all.resize(total);
+  std::copy(rest.begin(), rest.end(), all.begin() + kHeadBytes);
   return all;
 }
 
