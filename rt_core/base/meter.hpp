@@ -15,26 +15,42 @@ namespace palpate {
 class Meter {
  public:
   Meter(const Budget& budget, std::uint64_t reserve_ns) noexcept : budget_(budget) {
+    stop_units_ = budget.units;
     if (budget.clock_ns == nullptr) return;
     start_ns_ = tail_start_ns_ = now_ns();
     const std::uint64_t half =
         budget.deadline_ns > start_ns_ ? (budget.deadline_ns - start_ns_) / 2 : 0;
-    stop_ns_ = budget.deadline_ns - (reserve_ns < half ? reserve_ns : half);
+    stop_ns_ = end_ns_ = budget.deadline_ns - (reserve_ns < half ? reserve_ns : half);
   }
 
   void charge(std::uint64_t units) noexcept { used_ += units; }
   [[nodiscard]] std::uint64_t used() const noexcept { return used_; }
+
+  /// Until release(), one part in `parts` of what is left is not to be had. Unlimited units stay
+  /// so.
+  void hold_back(std::uint64_t parts) noexcept {
+    if (budget_.units != kUnlimited && used_ < budget_.units) {
+      stop_units_ = budget_.units - (budget_.units - used_) / parts;
+    }
+    if (budget_.clock_ns == nullptr) return;
+    const std::uint64_t now = now_ns();
+    if (now < end_ns_) stop_ns_ = end_ns_ - (end_ns_ - now) / parts;
+  }
+  void release() noexcept {
+    stop_units_ = budget_.units;
+    stop_ns_ = end_ns_;
+  }
+
   /// Units left, as far as a counter of 32 bits tells.
   [[nodiscard]] std::uint32_t queries_left() const noexcept {
     constexpr std::uint64_t kMost = 0xffffffffu;
-    const std::uint64_t left = budget_.units > used_ ? budget_.units - used_ : 0;
+    const std::uint64_t left = stop_units_ > used_ ? stop_units_ - used_ : 0;
     return static_cast<std::uint32_t>(left < kMost ? left : kMost);
   }
   /// What units and time are expected to do for; infinity where neither is limited.
   /// @param query_ns  time that one is expected to take; 0: unknown
   [[nodiscard]] double queries_affordable(std::uint64_t query_ns) const noexcept {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
     const double units =
         budget_.units == kUnlimited ? kInfinity : static_cast<double>(queries_left());
     if (budget_.clock_ns == nullptr || query_ns == 0) return units;
@@ -49,7 +65,7 @@ class Meter {
   }
   /// From when the meter was made to begin_tail(); 0 without a clock.
   [[nodiscard]] std::uint64_t refined_ns() const noexcept { return tail_start_ns_ - start_ns_; }
-  [[nodiscard]] bool out_of_units() const noexcept { return used_ >= budget_.units; }
+  [[nodiscard]] bool out_of_units() const noexcept { return used_ >= stop_units_; }
   [[nodiscard]] bool out_of_time() const noexcept {
     return budget_.clock_ns != nullptr && now_ns() >= stop_ns_;
   }
@@ -64,6 +80,8 @@ class Meter {
   }
 
  private:
+  static constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
+
   [[nodiscard]] std::uint64_t now_ns() const noexcept {
     return budget_.clock_ns(budget_.clock_context);
   }
@@ -71,7 +89,9 @@ class Meter {
   Budget budget_;
   std::uint64_t used_ = 0;
   std::uint64_t start_ns_ = 0;
-  std::uint64_t stop_ns_ = 0;
+  std::uint64_t stop_units_ = 0;  ///< where the budget ends, or what is held back begins
+  std::uint64_t stop_ns_ = 0;     ///< likewise
+  std::uint64_t end_ns_ = 0;
   std::uint64_t tail_start_ns_ = 0;
 };
 

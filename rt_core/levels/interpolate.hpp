@@ -24,6 +24,7 @@ inline constexpr double kOwnContactFrom = 2;
 /// children's place: so the front does not depend on how it came about. One query for each near
 /// parent of settled children that has a stopped one, or e_p < kOwnContactFrom, while the budget
 /// lasts; nothing else of the front is looked at.
+/// The contact of a parent that dives is the nearest of its children's: nothing below is nearer.
 void interpolate(Work& work) noexcept;
 
 /// Keeps a node inside the tree at hand for later ticks where its e_p < kOwnContactFrom.

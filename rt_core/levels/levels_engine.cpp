@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/levels_engine.hpp"
 
+#include "rt_core/levels/dive.hpp"
 #include "rt_core/levels/interpolate.hpp"
 #include "rt_core/levels/refine.hpp"
 #include "rt_core/levels/start.hpp"
@@ -13,6 +14,32 @@ namespace {
 bool is_approximate(const Work& work, const Node& node) noexcept {
   const PairState& pair = work.pair_of(node);
   return is_simplified(piece_a(pair, node)) || is_simplified(piece_b(pair, node));
+}
+
+/// Refinement and dives share what is left of the budget, round by round; in the last round there
+/// is no dive. Exact queries need dives only where they do not end in time.
+constexpr std::uint32_t kRounds = 4;
+constexpr std::uint64_t kDivesPart = 2;
+constexpr std::uint64_t kDivesPartExact = 8;
+
+void hold_back(Work& work) noexcept {
+  if (!work.rules.contact_dive) return;
+  work.meter.hold_back(work.rules.exact ? kDivesPartExact : kDivesPart);
+}
+
+void refine_and_dive(Work& work) noexcept {
+  for (std::uint32_t round = 0; round < kRounds; ++round) {
+    if (round + 1 < kRounds) hold_back(work);
+    refine(work);
+    work.meter.release();
+    dive(work);
+    if (work.waiting.empty() || work.out_of_budget()) break;
+  }
+  report_undived(work);
+  if (work.waiting.empty()) return;
+  const bool by_units = work.meter.out_of_units();
+  work.result.truncated_by_units |= by_units;
+  work.result.truncated_by_time = !by_units;
 }
 
 /// What still waits is not resolved; nor are stopped nodes, which stand for original surface that
@@ -39,9 +66,11 @@ QueryResult finish(Work& work) noexcept {
 QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally) noexcept {
   ++memory.ticks;
   Work work(memory, rules, meter, tally);
+  hold_back(work);  // where a tick starts depends on what refinement may spend
   start(work);
+  meter.release();
   tally.lap(Stage::start, meter);
-  refine(work);
+  refine_and_dive(work);
   tally.lap(Stage::refine, meter);
   if (!work.result.truncated_by_time && !work.result.truncated_by_units) {
     if (rules.interpolate && !rules.exact) interpolate(work);

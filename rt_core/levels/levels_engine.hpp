@@ -50,7 +50,8 @@ struct QueryResult {
 /// Q(A, B, delta) for all pairs, whose poses and deltas are set.
 ///
 /// Stage by stage: start (start.hpp) from last tick's front, the near nodes of it on a queue;
-/// refine (refine.hpp), while the budget lasts; with time left, interpolate contacts between levels
+/// refine (refine.hpp) and dive for the contacts of the original surfaces (dive.hpp), which share
+/// the budget; with time left, interpolate contacts between levels
 /// (interpolate.hpp) and keep up the tree and the certificate (upkeep.hpp). What still waits when
 /// the budget ends keeps its lower bound, and the last contact that it or an ancestor gave,
 /// re-measured at its material points: the cut is complete at every moment, and a truncated answer

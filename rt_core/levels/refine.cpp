@@ -11,17 +11,6 @@ namespace {
 
 using image::Piece;
 
-bool budget_left(Work& work) noexcept {
-  if (work.meter.out_of_units()) {
-    work.result.truncated_by_units = true;
-  } else if (work.meter.out_of_time()) {
-    work.result.truncated_by_time = true;
-  } else {
-    return true;
-  }
-  return false;
-}
-
 void allow(Node& node, bool a, bool b) noexcept {
   if (a) set(node, kRefineA);
   if (b) set(node, kRefineB);
@@ -34,9 +23,22 @@ void wait_for_split(Work& work, std::uint32_t index) noexcept {
   work.wait({rank(work, node, certain), certain * pair.unit_m, index, true});
 }
 
-/// Until it is measured, a child stands where its parent did.
-void inherit(const Node& parent, Node& child) noexcept {
+bool is_below(const ImageView& image, std::uint32_t piece, std::uint32_t top) noexcept {
+  for (std::uint32_t level = 0; piece != kNone && level <= image::kMaxLevels; ++level) {
+    if (piece == top) return true;
+    piece = image.pieces[piece].parent;
+  }
+  return false;
+}
+
+/// Until it is measured, a child stands where its parent did; a contact of original pieces goes to
+/// the child that holds them.
+void inherit(const PairState& pair, const Node& parent, Node& child) noexcept {
   hand_over(parent, child);
+  if (has_dived(child) && !(is_below(*pair.image_a, child.leaf_a, child.piece_a) &&
+                            is_below(*pair.image_b, child.leaf_b, child.piece_b))) {
+    child.contact = 0;
+  }
   child.s_star = parent.s_star;
 }
 
@@ -62,7 +64,7 @@ void split(Work& work, std::uint32_t index) noexcept {
   for (std::uint32_t c = parent.first_child; c != kNone; c = work.tree[c].next_sibling) {
     Node& child = work.tree[c];
     begin(pair, child, certain_now(pair, parent));
-    inherit(parent, child);
+    inherit(pair, parent, child);
     if (squared_norm(towards_a) > 0) Probe::seed(pair, child, towards_a);
     wait_if_near(work, c);
   }
@@ -77,8 +79,11 @@ void stop_on_surface(Work& work, std::uint32_t index, const LeafContact& contact
   stop(work, index);
 }
 
-/// Keeps the contact of two pieces in the node, and reports it where refinement stops here.
+/// Keeps the contact of two pieces in the node, and reports it where refinement stops here and does
+/// not dive. One that a dive found before stays: it is the better guess.
 void touch(Work& work, Node& node, const convex::Distance& d, bool stops) noexcept {
+  const bool dives = work.dives(node);
+  if (dives && has_dived(node)) return;
   const PairState& pair = work.pair_of(node);
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
@@ -93,14 +98,10 @@ void touch(Work& work, Node& node, const convex::Distance& d, bool stops) noexce
   if (!contact.found) return;
   const bool original = !is_simplified(a) && !is_simplified(b);
   if (original && !contact.interrupted) prove(pair, node, contact.lower_bound);
-  if (contact.capped) {
-    work.result.iteration_cap_met = true;
-    const double gap = (contact.distance - contact.lower_bound) * pair.unit_m;
-    if (gap > work.result.capped_gap_m) work.result.capped_gap_m = gap;
-  }
+  work.note_cap(pair, contact);
   if (contact.distance >= pair.delta) return;
   keep(pair, a, b, contact, node);
-  if (stops) work.add_contact(node, contact);
+  if (stops && !dives) work.add_contact(node, contact);
 }
 
 /// A node that gives no contact itself.
@@ -144,7 +145,7 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
   if (d.lower_bound < pair.delta) {
     // Overlap of simplified hulls is no contact: the last one, of an ancestor apart, stands.
     if (!refines || !convex::overlaps(d)) touch(work, node, d, !refines);
-  } else {
+  } else if (!work.dives(node) || !has_dived(node)) {
     node.contact = 0;
   }
   if (refines) {
@@ -170,7 +171,7 @@ void measure(Work& work, std::uint32_t index) noexcept {
 }  // namespace
 
 void refine(Work& work) noexcept {
-  while (!work.waiting.empty() && budget_left(work)) {
+  while (!work.waiting.empty() && !work.out_of_budget()) {
     const std::uint32_t index = work.waiting.top().node;
     work.waiting.pop();
     if ((work.tree[index].flags & kMeasured) != 0) {

@@ -24,6 +24,7 @@ Vec3d mixed(double share, Vec3d own, Vec3d other) noexcept {
 void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
           const LeafContact& contact, Node& node) noexcept {
   node.contact = 1;
+  node.leaf_a = node.leaf_b = kNone;
   node.witness_a = vec_cast<float>(contact.point_a);
   node.witness_b = vec_cast<float>(transpose(pair.b_in_a.rotation) *
                                    (contact.point_b - pair.b_in_a.translation));
@@ -49,24 +50,33 @@ LeafContact remeasured(const PairState& pair, const Node& node) noexcept {
   return contact;
 }
 
-bool Report::add(const PairState& pair, Node& node, const LeafContact& contact) noexcept {
-  const double distance_m = contact.distance * pair.unit_m;
+void Report::note_upper(const PairState& pair, const Node& node,
+                        const LeafContact& contact) noexcept {
   const double upper_m = (contact.upper_bound + static_cast<double>(node.slack)) * pair.unit_m;
   if (upper_m < upper_m_) upper_m_ = upper_m;
+}
+
+bool Report::add(const PairState& pair, Node& node, const LeafContact& contact) noexcept {
+  note_upper(pair, node, contact);
   if (count_ == contacts_.size()) return false;
-  node.report = count_;
-  Contact& out = contacts_[count_++];
+  node.report = count_++;
+  replace(pair, node, contact);
+  return true;
+}
+
+void Report::replace(const PairState& pair, const Node& node, const LeafContact& contact) noexcept {
+  note_upper(pair, node, contact);
+  Contact& out = contacts_[node.report];
   out.point_a_m = in_world(pair, contact.point_a);
   out.point_b_m = in_world(pair, contact.point_b);
   out.normal = pair.rotation_a * contact.normal;
-  out.distance_m = distance_m;
+  out.distance_m = contact.distance * pair.unit_m;
   out.weight = 0;
   out.pair = node.pair;
   out.piece_a = node.piece_a;
   out.level_a = piece_a(pair, node).level;
   out.piece_b = node.piece_b;
   out.level_b = piece_b(pair, node).level;
-  return true;
 }
 
 void Report::blend(const PairState& pair, const Node& node, const LeafContact& other,

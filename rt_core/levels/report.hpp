@@ -27,6 +27,8 @@ inline void hand_over(const Node& from, Node& to) noexcept {
   to.witness_b = from.witness_b;
   to.normal = from.normal;
   to.slack = from.slack;
+  to.leaf_a = from.leaf_a;
+  to.leaf_b = from.leaf_b;
 }
 
 /// The contact kept in a node, measured again at its material points, with its normal as it turned
@@ -39,8 +41,11 @@ class Report {
  public:
   explicit Report(std::span<Contact> contacts) noexcept : contacts_(contacts) {}
 
-  /// Adds the contact of a node. False where there is no room.
+  /// Adds the contact of a node that has none yet in this tick. False where there is no room.
   bool add(const PairState& pair, Node& node, const LeafContact& contact) noexcept;
+
+  /// Puts another one in the place of what was added for a node.
+  void replace(const PairState& pair, const Node& node, const LeafContact& contact) noexcept;
 
   /// Mixes a node's contact with another one: `share` of its own, the rest of `other`. At delta or
   /// more it is dropped.
@@ -52,6 +57,8 @@ class Report {
   void finish(QueryResult& result) noexcept;
 
  private:
+  void note_upper(const PairState& pair, const Node& node, const LeafContact& contact) noexcept;
+
   std::span<Contact> contacts_;
   std::uint32_t count_ = 0;
   double upper_m_ = std::numeric_limits<double>::infinity();

@@ -17,7 +17,9 @@ inline constexpr std::uint8_t kMeasured = 1;  ///< this tick
 inline constexpr std::uint8_t kStopped = 2;  ///< this tick: near, and no detail missing can be felt
 inline constexpr std::uint8_t kRefineA = 4;  ///< this tick: near, and a is to be refined
 inline constexpr std::uint8_t kRefineB = 8;
-inline constexpr std::uint8_t kOfThisTick = kMeasured | kStopped | kRefineA | kRefineB;
+inline constexpr std::uint8_t kDived =
+    16;  ///< this tick: has looked for a contact of original pieces
+inline constexpr std::uint8_t kOfThisTick = kMeasured | kStopped | kRefineA | kRefineB | kDived;
 
 /// A pair of pieces and what is known of their distance. Lengths are in the unit of the body pair.
 struct alignas(64) Node {
@@ -51,6 +53,9 @@ struct alignas(64) Node {
   float excess = 0;   ///< Detail::excess
   std::uint32_t report = kNone;  ///< its contact of this tick; inside the tree: the last tick in
                                  ///< which it was mixed
+  /// Whose contact is kept, where a dive found it (dive.hpp); else kNone
+  std::uint32_t leaf_a = kNone;
+  std::uint32_t leaf_b = kNone;
   // Warm starts.
   convex::Cache own;      ///< of the pieces' hulls
   convex::Cache culling;  ///< of their culling hulls
@@ -62,6 +67,11 @@ inline void set(Node& node, std::uint8_t flags) noexcept {
 }
 inline void clear(Node& node, std::uint8_t flags) noexcept {
   node.flags = static_cast<std::uint8_t>(node.flags & ~flags);
+}
+
+/// Keeps a contact of original pieces, found by a dive.
+inline bool has_dived(const Node& node) noexcept {
+  return node.contact != 0 && node.leaf_a != kNone;
 }
 
 /// A fixed pool of nodes, one tree for every body pair, all fronts in one array. A node is replaced

@@ -23,7 +23,8 @@ bool Work::rests_apart(Node& node, const convex::Distance& own) noexcept {
     static_cast<void>(probe.cull(pair, node));
   }
   const double certain = certain_now(pair, node);
-  set_rest(pair, node, own.lower_bound < certain ? own.lower_bound : certain);
+  const bool own_counts = own.lower_bound < certain && !dives(node);
+  set_rest(pair, node, own_counts ? own.lower_bound : certain);
   return !is_near(node);
 }
 
@@ -44,15 +45,31 @@ void Work::leave_unresolved(double lower_m, const Node& node) noexcept {
 
 void Work::leave(std::uint32_t index, double lower_m) noexcept {
   Node& node = tree[index];
-  const PairState& pair = pair_of(node);
   leave_unresolved(lower_m, node);
   if (node.contact == 0) return;
-  const LeafContact contact = remeasured(pair, node);
-  if (contact.found && contact.distance < pair.delta) add_contact(node, contact);
+  add_contact(node, remeasured(pair_of(node), node));
+}
+
+bool Work::dives(const Node& node) const noexcept {
+  if (!rules.contact_dive || rules.exact) return false;
+  const PairState& pair = pair_of(node);
+  const image::Piece& a = piece_a(pair, node);
+  const image::Piece& b = piece_b(pair, node);
+  return (a.children != 0 && is_simplified(a)) || (b.children != 0 && is_simplified(b));
+}
+
+void Work::note_cap(const PairState& pair, const LeafContact& contact) noexcept {
+  if (!contact.capped) return;
+  result.iteration_cap_met = true;
+  const double gap = (contact.distance - contact.lower_bound) * pair.unit_m;
+  if (gap > result.capped_gap_m) result.capped_gap_m = gap;
 }
 
 void Work::add_contact(Node& node, const LeafContact& contact) noexcept {
-  if (report.add(pair_of(node), node, contact)) return;
+  const PairState& pair = pair_of(node);
+  if (contact.distance >= pair.delta) return;
+  if (node.report != kNone) return report.replace(pair, node, contact);
+  if (report.add(pair, node, contact)) return;
   result.truncated_by_memory = true;
   leave_unresolved(certain_m(node), node);
 }

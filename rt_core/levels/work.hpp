@@ -65,7 +65,14 @@ struct Work {
   /// points.
   void leave(std::uint32_t index, double lower_m) noexcept;
 
-  /// Reports the contact of a node, or that there was no room for it.
+  /// A node whose contact a dive looks for where refinement stops at it (dive.hpp).
+  [[nodiscard]] bool dives(const Node& node) const noexcept;
+
+  /// Notes an iteration cap met by a contact of original pieces, for the certificate.
+  void note_cap(const PairState& pair, const LeafContact& contact) noexcept;
+
+  /// Reports the contact of a node if it is nearer than delta, in place of one reported before; or
+  /// that there was no room for it.
   void add_contact(Node& node, const LeafContact& contact) noexcept;
 
   QueryMemory& memory;

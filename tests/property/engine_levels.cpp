@@ -10,33 +10,14 @@
 
 #include "tests/support/answers.hpp"
 #include "tests/support/brute_force.hpp"
-#include "tests/support/shapes.hpp"
+#include "tests/support/coarse_bodies.hpp"
 
 namespace palpate::test {
 namespace {
 
-constexpr double kDelta = 0.05;
-
 Pose slide(int i) {
   return {{1.85 + 0.02 * std::sin(0.2 * i), 0.3 * std::sin(0.03 * i), 0.004 * i},
           turn({0.01 * i, 0.004 * i, 0})};
-}
-
-/// Simplified far below what would be kept for a hand, so that small meshes have many levels.
-bake::BakeOptions coarse() {
-  bake::BakeOptions options;
-  options.stop.stop_resolution = 1.5;
-  return options;
-}
-
-struct Bodies {
-  BakedBody a{bumpy_ball(24, 32, 1), coarse()};
-  BakedBody b{bumpy_ball(20, 28, 0.8), coarse()};
-};
-
-const Bodies& bodies() {
-  static const Bodies both;
-  return both;
 }
 
 std::vector<double> true_distances(int ticks) {
@@ -157,6 +138,7 @@ TEST(EngineLevels, contacts_do_not_depend_on_history) {
 double largest_jump(double s0, bool interpolate) {
   Settings settings = with_s0(s0, interpolate);
   settings.cluster_radius_m = 10;
+  settings.contact_dive = false;  // else a change of level hardly shows
   BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, settings);
   double last = 0, largest = 0;
   for (int i = 0; i < 850; ++i) {
@@ -187,6 +169,7 @@ Row row_of(const TickResult& r) {
   return {f.x, f.y, f.z, t.x, t.y, t.z, r.contacts.empty() ? -1.0 : r.min_distance_m};
 }
 
+// Dives would find finer pieces in the whole image.
 TEST(EngineLevels, image_without_its_finest_levels_gives_the_same_bits_within_its_promise) {
   const BakedBody small = pruned();
   const image::Header& header = *small.view.header;
@@ -194,8 +177,10 @@ TEST(EngineLevels, image_without_its_finest_levels_gives_the_same_bits_within_it
   const auto s0 = static_cast<double>(header.s0_min);
   for (const bool interpolate : {false, true}) {
     for (const std::uint64_t units : {40u, 1000000u}) {
-      BakedScene whole({bodies().a.view, bodies().b.view}, {{0, 1}}, with_s0(s0, interpolate));
-      BakedScene part({small.view, bodies().b.view}, {{0, 1}}, with_s0(s0, interpolate));
+      Settings settings = with_s0(s0, interpolate);
+      settings.contact_dive = false;
+      BakedScene whole({bodies().a.view, bodies().b.view}, {{0, 1}}, settings);
+      BakedScene part({small.view, bodies().b.view}, {{0, 1}}, settings);
       for (int i = 0; i < 40; ++i) {
         const Pose poses[2] = {slide(i), {}};
         const TickResult w = tick_or_fail(*whole.engine, poses, {.units = units});

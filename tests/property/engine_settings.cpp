@@ -7,28 +7,10 @@
 
 #include "tests/support/answers.hpp"
 #include "tests/support/brute_force.hpp"
-#include "tests/support/shapes.hpp"
+#include "tests/support/coarse_bodies.hpp"
 
 namespace palpate::test {
 namespace {
-
-constexpr double kDelta = 0.05;
-
-bake::BakeOptions coarse() {
-  bake::BakeOptions options;
-  options.stop.stop_resolution = 1.5;
-  return options;
-}
-
-struct Bodies {
-  BakedBody a{bumpy_ball(24, 32, 1), coarse()};
-  BakedBody b{bumpy_ball(20, 28, 0.8), coarse()};
-};
-
-const Bodies& bodies() {
-  static const Bodies both;
-  return both;
-}
 
 /// Slides in contact, parts and comes back, and jumps to another side once.
 Pose motion(int i) {

@@ -5,27 +5,19 @@
 
 #include "tests/support/answers.hpp"
 #include "tests/support/brute_force.hpp"
-#include "tests/support/shapes.hpp"
+#include "tests/support/coarse_bodies.hpp"
 
 namespace palpate::test {
 namespace {
 
-constexpr double kDelta = 0.05;
-
-bake::BakeOptions coarse() {
-  bake::BakeOptions options;
-  options.stop.stop_resolution = 1.5;
-  return options;
-}
-
 // A ring about a ball: contacts on several sides at once.
-struct Bodies {
+struct RingAboutBall {
   BakedBody a{bumpy_ball(20, 24, 0.62), coarse()};
   BakedBody b{ring(28, 14, 1, 0.35), coarse()};
 };
 
-const Bodies& bodies() {
-  static const Bodies both;
+const RingAboutBall& ring_about_ball() {
+  static const RingAboutBall both;
   return both;
 }
 
@@ -53,7 +45,7 @@ void expect_no_region_lost(const TickResult& r, const PlacedTriangles& a,
                            const PlacedTriangles& b) {
   const double nearest = r.contacts.empty() ? kDelta : r.min_distance_m;
   const double open_from = nearest - r.certificate.error_bound_m - 2e-6;
-  for (const auto& region : near_regions(bodies().a.mesh, a, b, 0.98 * kDelta)) {
+  for (const auto& region : near_regions(ring_about_ball().a.mesh, a, b, 0.98 * kDelta)) {
     double apart = std::numeric_limits<double>::infinity();
     for (const Contact& c : r.contacts) apart = std::min(apart, to_region(a, region, c.point_a_m));
     if (apart > kDelta) {
@@ -64,15 +56,15 @@ void expect_no_region_lost(const TickResult& r, const PlacedTriangles& a,
 }
 
 TEST(EngineTruncation, every_near_region_has_a_contact_or_is_within_the_certificate) {
-  const PlacedTriangles fixed(bodies().b.mesh, {});
+  const PlacedTriangles fixed(ring_about_ball().b.mesh, {});
   for (const double s0 : {0.0, 0.02}) {
     for (const std::uint64_t units : {1u, 4u, 16u, 64u, 256u, 1024u}) {
-      BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}},
+      BakedScene scene({ring_about_ball().a.view, ring_about_ball().b.view}, {{0, 1}},
                        {.delta_m = kDelta, .s0 = s0, .cluster_radius_m = 0.1});
       for (int i = 0; i < 40; ++i) {
         const Pose poses[2] = {motion(i), {}};
         const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
-        expect_no_region_lost(r, PlacedTriangles(bodies().a.mesh, poses[0]), fixed);
+        expect_no_region_lost(r, PlacedTriangles(ring_about_ball().a.mesh, poses[0]), fixed);
       }
     }
   }
@@ -86,15 +78,16 @@ struct Felt {
 };
 
 Felt feel(std::uint64_t units, int ticks) {
-  const PlacedTriangles fixed(bodies().b.mesh, {});
-  BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}},
+  const PlacedTriangles fixed(ring_about_ball().b.mesh, {});
+  BakedScene scene({ring_about_ball().a.view, ring_about_ball().b.view}, {{0, 1}},
                    {.delta_m = kDelta, .s0 = 0.02, .cluster_radius_m = 0.1});
   Felt out;
   for (int i = 0; i < ticks; ++i) {
     const Pose poses[2] = {motion(i), {}};
     const Budget budget = i == 0 ? Budget{} : Budget{.units = units};
     const TickResult r = tick_or_fail(*scene.engine, poses, budget);
-    if (distance_of(PlacedTriangles(bodies().a.mesh, poses[0]), fixed) > 0.5 * kDelta) continue;
+    if (distance_of(PlacedTriangles(ring_about_ball().a.mesh, poses[0]), fixed) > 0.5 * kDelta)
+      continue;
     ++out.touching;
     out.felt += r.contacts.empty() ? 0 : 1;
   }

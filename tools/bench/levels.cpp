@@ -55,6 +55,13 @@ constexpr Variant kSimplified[] = {
        s.stop_on_surface = true;
      }},
     {"s0 = 0.025", [](Settings&) {}},
+    {"s0 = 0.025, no dive", [](Settings& s) { s.contact_dive = false; }},
+    {"s0 = 0.2", [](Settings& s) { s.s0 = 0.2; }},
+    {"s0 = 0.2, no dive",
+     [](Settings& s) {
+       s.s0 = 0.2;
+       s.contact_dive = false;
+     }},
     {"s0 = 0.025, stop on surface", [](Settings& s) { s.stop_on_surface = true; }},
     {"s0 = 0.025, bounds = paper", [](Settings& s) { s.bounds = Bounds::paper; }},
     {"s0 = 0.025, no motion bounds", [](Settings& s) { s.motion_bounds = false; }},
@@ -64,6 +71,12 @@ constexpr Variant kSimplified[] = {
      [](Settings& s) {
        s.s0 = 1e6;
        s.kappa = 0.1;
+     }},
+    {"kappa = 0.1, no dive",
+     [](Settings& s) {
+       s.s0 = 1e6;
+       s.kappa = 0.1;
+       s.contact_dive = false;
      }},
     {"kappa = 0.1, stop on surface", [](Settings& s) {
        s.s0 = 1e6;

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contacts that do not depend on the level: dives against exact queries.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tests/support/answers.hpp"
+#include "tests/support/coarse_bodies.hpp"
+
+namespace palpate::test {
+namespace {
+
+constexpr int kTicks = 60;
+constexpr std::uint64_t kUnlimited = Budget{}.units;
+
+/// In contact and out of it, in slow and in fast steps.
+Pose motion(int i) {
+  const double u = i < kTicks / 2 ? 0.1 * i : 1.0 * i;
+  return {{1.84 + 0.03 * std::sin(0.3 * u), 0.2 * std::sin(0.05 * u), 0.002 * u},
+          turn({0.005 * u, 0.002 * u, 0})};
+}
+
+Settings with(double s0, bool dive) {
+  return {.delta_m = kDelta, .s0 = s0, .contact_dive = dive, .cluster_radius_m = 0.1};
+}
+
+Settings exact(bool dive = true) {
+  return {.delta_m = kDelta, .exact = true, .contact_dive = dive, .cluster_radius_m = 0.1};
+}
+
+struct Answer {
+  Vec3d force_N;
+  double least_m = 0;  ///< delta where nothing touches
+  double bound_m = 0;
+  std::size_t contacts = 0;
+};
+
+std::vector<Answer> run(const ImageView& a, const Settings& settings,
+                        std::uint64_t units = kUnlimited) {
+  BakedScene scene({a, bodies().b.view}, {{0, 1}}, settings);
+  std::vector<Answer> answers;
+  for (int i = 0; i < kTicks; ++i) {
+    const Pose poses[2] = {motion(i), {}};
+    const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
+    EXPECT_LE(r.queries, units);
+    answers.push_back({r.wrench.force_N, r.contacts.empty() ? kDelta : r.min_distance_m,
+                       r.certificate.error_bound_m, r.contacts.size()});
+  }
+  return answers;
+}
+
+double error(const std::vector<Answer>& answers, const std::vector<Answer>& truth) {
+  double sum = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    sum += squared_norm(answers[i].force_N - truth[i].force_N);
+  return std::sqrt(sum / static_cast<double>(truth.size()));
+}
+
+TEST(EngineDive, force_comes_nearer_to_the_exact_one) {
+  const std::vector<Answer> truth = run(bodies().a.view, exact());
+  for (const double s0 : {0.05, 0.5}) {
+    const double paper = error(run(bodies().a.view, with(s0, false)), truth);
+    const double dived = error(run(bodies().a.view, with(s0, true)), truth);
+    EXPECT_LT(dived, 0.5 * paper) << s0;
+  }
+}
+
+TEST(EngineDive, least_distance_is_found_to_a_tenth_of_delta_whatever_is_left_out) {
+  constexpr double kLoose_m = 0.1 * kDelta + 1e-6;
+  const std::vector<Answer> truth = run(bodies().a.view, exact());
+  for (const double s0 : {0.01, 0.05, 0.5}) {
+    const std::vector<Answer> dived = run(bodies().a.view, with(s0, true));
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      EXPECT_GE(dived[i].least_m, truth[i].least_m - 1e-6) << s0 << ", tick " << i;
+      EXPECT_LE(dived[i].least_m, truth[i].least_m + kLoose_m) << s0 << ", tick " << i;
+      EXPECT_LE(std::abs(dived[i].least_m - truth[i].least_m), dived[i].bound_m + 1e-6);
+    }
+  }
+}
+
+TEST(EngineDive, certificate_holds_in_images_without_their_finest_levels) {
+  bake::BakeOptions options = coarse();
+  options.max_bytes = static_cast<std::size_t>(bodies().a.view.header->total_bytes / 2);
+  const BakedBody small(bumpy_ball(24, 32, 1), options);
+  ASSERT_GT(small.view.header->dropped_levels, 0u);
+  const auto s0 = static_cast<double>(small.view.header->s0_min);
+  const std::vector<Answer> truth = run(bodies().a.view, exact());
+  for (const std::uint64_t units : {std::uint64_t{30}, std::uint64_t{300}, kUnlimited}) {
+    const std::vector<Answer> dived = run(small.view, with(s0, true), units);
+    for (std::size_t i = 0; i < truth.size(); ++i)
+      EXPECT_LE(std::abs(dived[i].least_m - truth[i].least_m), dived[i].bound_m + 1e-6) << i;
+  }
+}
+
+TEST(EngineDive, exact_query_that_ends_in_time_is_not_changed) {
+  const std::vector<Answer> with_dives = run(bodies().a.view, exact(true));
+  const std::vector<Answer> without = run(bodies().a.view, exact(false));
+  for (std::size_t i = 0; i < without.size(); ++i) {
+    EXPECT_EQ(with_dives[i].contacts, without[i].contacts);
+    EXPECT_EQ(norm(with_dives[i].force_N - without[i].force_N), 0);
+  }
+}
+
+TEST(EngineDive, exact_query_cut_short_has_contacts_that_the_descent_found) {
+  constexpr std::uint64_t kUnits = 120;
+  const std::vector<Answer> truth = run(bodies().a.view, exact());
+  const std::vector<Answer> with_dives = run(bodies().a.view, exact(true), kUnits);
+  const std::vector<Answer> without = run(bodies().a.view, exact(false), kUnits);
+  EXPECT_LT(error(with_dives, truth), error(without, truth));
+  std::size_t lost = 0;
+  std::size_t lost_without = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (truth[i].contacts == 0) continue;
+    lost += with_dives[i].contacts == 0 ? 1u : 0u;
+    lost_without += without[i].contacts == 0 ? 1u : 0u;
+  }
+  EXPECT_LT(lost, lost_without);
+}
+
+}  // namespace
+}  // namespace palpate::test
