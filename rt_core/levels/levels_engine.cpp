@@ -21,9 +21,11 @@ bool is_approximate(const Work& work, const Node& node) noexcept {
 constexpr std::uint32_t kRounds = 4;
 constexpr std::uint64_t kDivesPart = 2;
 constexpr std::uint64_t kDivesPartExact = 8;
+/// No share of fewer queries pays for a search: refinement gets them all.
+constexpr std::uint32_t kTooFewToShare = 8;
 
 void hold_back(Work& work) noexcept {
-  if (!work.rules.contact_dive) return;
+  if (!work.rules.contact_dive || work.meter.queries_left() <= kTooFewToShare) return;
   work.meter.hold_back(work.rules.exact ? kDivesPartExact : kDivesPart);
 }
 

@@ -80,10 +80,12 @@ void stop_on_surface(Work& work, std::uint32_t index, const LeafContact& contact
 }
 
 /// Keeps the contact of two pieces in the node, and reports it where refinement stops here and does
-/// not dive. One that a dive found before stays: it is the better guess.
+/// not dive. One that a dive found before stays while it is one: it is the better guess.
 void touch(Work& work, Node& node, const convex::Distance& d, bool stops) noexcept {
   const bool dives = work.dives(node);
-  if (dives && has_dived(node)) return;
+  if (dives && has_dived(node) &&
+      remeasured(work.pair_of(node), node).distance < work.pair_of(node).delta)
+    return;
   const PairState& pair = work.pair_of(node);
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);

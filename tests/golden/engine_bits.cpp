@@ -28,17 +28,17 @@ constexpr double kDelta_m = 0.05;
 constexpr std::uint64_t kUnlimited = Budget{}.units;
 const Case kCases[] = {
     {"exact", {.delta_m = kDelta_m, .exact = true}, kUnlimited, 0xa316e3713c66e891},
-    {"exact, 40 units", {.delta_m = kDelta_m, .exact = true}, 40, 0xacfa01c5f9c8c0b2},
-    {"simplified", {.delta_m = kDelta_m, .s0 = 0.02}, kUnlimited, 0x8f1d7e87823b308c},
-    {"simplified, 40 units", {.delta_m = kDelta_m, .s0 = 0.02}, 40, 0xad414a7f4d1dbf9f},
+    {"exact, 40 units", {.delta_m = kDelta_m, .exact = true}, 40, 0xe54f960034440af8},
+    {"simplified", {.delta_m = kDelta_m, .s0 = 0.02}, kUnlimited, 0xeefe6d8196e3b666},
+    {"simplified, 40 units", {.delta_m = kDelta_m, .s0 = 0.02}, 40, 0x863abf8e0b6fdbef},
     {"stop on surface, by ratio",
      {.delta_m = kDelta_m, .s0 = 0.005, .order = Order::ratio, .stop_on_surface = true},
      200,
-     0x73111d77fce10635},
+     0x5a812a8b5316aa4b},
     {"paper's bounds",
      {.delta_m = kDelta_m, .s0 = 0.02, .bounds = Bounds::paper},
      200,
-     0xc2b12c54eb6a5164},
+     0x92d4bded164a635d},
 };
 constexpr int kTicks = 200;
 
