@@ -17,7 +17,7 @@ inline constexpr double kDiveLoose = 0.1;
 /// Queries of one search, and pairs that it has open, at most; beyond, the nearest contact found
 /// stands and nothing is proved.
 inline constexpr std::uint64_t kMaxDiveQueries = 512;
-inline constexpr std::uint32_t kMaxOpenPairs = 96;
+inline constexpr std::uint32_t kMaxOpenPairs = 64;
 
 /// Gives stopped nodes of simplified pieces the nearest contact of the original pieces below them,
 /// and reports it.
