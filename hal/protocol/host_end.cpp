@@ -66,16 +66,16 @@ bool HostEnd::receive(std::span<const std::byte> packet, std::uint64_t arrival_n
   last_sequence_ = s.sequence;
   last_device_ns_ = s.device_time_ns;
   const std::uint64_t time_ns = clock_map_.host_time(s.device_time_ns, arrival_ns);
-  homing_ = s.mode == Mode::homing;
-  if (homing_) return false;
 
+  out = {};
   out.sequence = sequence_;
   out.time_ns = time_ns;
-  out.pose = s.is_joint_state ? chain_.pose(s.joint_counts)
-                              : Pose{metres(s.position_nm), unit_quaternion(s.orientation)};
-  out.twist = {};
   out.buttons = s.buttons;
   out.faults = faults_of(s);
+  out.homing = s.mode == Mode::homing;
+  if (out.homing) return true;
+  out.pose = s.is_joint_state ? chain_.pose(s.joint_counts)
+                              : Pose{metres(s.position_nm), unit_quaternion(s.orientation)};
   if (!chain_.is_within_ends(s.joint_counts)) out.faults |= kDeviceBadReading;
   counts_ = s.joint_counts;
   return true;
