@@ -34,9 +34,10 @@ class HostEnd {
   [[nodiscard]] bool receive(std::span<const std::byte> packet, std::uint64_t arrival_ns,
                              DeviceState& out) noexcept;
 
-  /// The packet that asks for a command, or for no force where the command has expired or is not
-  /// finite. The life that it gives the device is what is left of the command's own, at most the
-  /// device's; forces beyond the wire's range are cut to it.
+  /// The packet that asks for a command, or for no force where the command has expired, is not
+  /// finite, or the newest reading says that the device is homing. The life that it gives the
+  /// device is what is left of the command's own, at most the device's; forces beyond the wire's
+  /// range are cut to it.
   [[nodiscard]] Packet command(const DeviceCommand& command, std::uint64_t now_ns) noexcept;
 
   /// The packet that asks for no force.
@@ -50,6 +51,7 @@ class HostEnd {
   JointCounts counts_{};  ///< of the newest reading
   ClockMap clock_map_;
   LinkCounters counters_;
+  bool homing_ = false;              ///< in the newest reading
   std::uint32_t last_sequence_ = 0;  ///< on the wire; 0: none yet
   std::uint64_t last_device_ns_ = 0;
   std::uint64_t sequence_ = 0;  ///< of the newest reading, without wrapping; from 1

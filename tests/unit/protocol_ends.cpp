@@ -235,6 +235,12 @@ TEST(HostEnd, homing_readings_say_so_and_have_no_pose) {
   s.mode = Mode::homing;
   EXPECT_TRUE(host.receive(encode(s), 1, out));
   EXPECT_TRUE(out.homing);
+  DeviceCommand push;
+  push.expires_ns = 1'000'000;
+  push.wrench.force_N.x = 1;
+  Command sent;
+  ASSERT_EQ(decode(host.command(push, 1), sent), PacketError::none);
+  EXPECT_FALSE(sent.enable);
   EXPECT_EQ(norm(out.pose.position_m), 0.0);
   ++s.sequence;
   ++s.device_time_ns;
