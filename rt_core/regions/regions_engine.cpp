@@ -25,7 +25,8 @@ constexpr double kJumpDelta = 2;
 /// is narrower than a share of delta.
 constexpr float kStep = 0.3f;
 constexpr float kLastStep = 0.1f;
-/// Of an interval that may stay open, motion may widen this share again before the next search.
+/// Where an interval may stay open, a search leaves this share of that to motion, unless it is
+/// fast.
 constexpr float kRestShare = 0.75f;
 /// Neighbours of a witness farther than this many delta are not looked at.
 constexpr float kClimbReach = 2;
@@ -305,21 +306,23 @@ class Query {
     }
   }
 
-  /// One step, the cheap ones first: a witness is sought, then moved to a nearer one, then the
-  /// region is searched; under a budget, which may end any moment, not all at once.
+  /// One step. Under a budget that may end any moment, the cheap ones first: a witness is sought,
+  /// then moved to a nearer one, then the region is searched, by and by.
   void narrow(Active& item, float share) noexcept {
+    if (!demand_.limited) {
+      close(item, share);
+      return;
+    }
     const Witness& witness = state_of(item).witness;
     const auto delta = static_cast<float>(pair_of(item).delta);
     if (witness.known() && !item.climbed && witness.distance < kClimbReach * delta) {
       climb_from_witness(item);
-    } else if (!demand_.limited) {
-      close(item, share);
-    } else {
-      const float step = item.width > kLastStep * delta ? kStep * item.width : 0;
-      const bool first = !witness.known();
-      close(item, step > share ? step : share, first);
-      if (first && witness.known() && !truncated_) climb_from_witness(item);
+      return;
     }
+    const bool first = !witness.known();
+    const float step = item.width > kLastStep * delta ? kStep * item.width : 0;
+    close(item, step > share ? step : share, first);
+    if (first && witness.known() && !truncated_) climb_from_witness(item);
   }
 
   void climb_from_witness(Active& item) noexcept {
@@ -363,8 +366,10 @@ class Query {
     // The search's bound gives away kRounding, which is part of the interval.
     const float room = tolerance > kRounding ? tolerance - kRounding : 0;
     auto margin = static_cast<float>(margin_of(pair_of(item)));
-    const bool last = !demand_.limited && state_of(item).witness.known();
-    if (last && margin < kRestShare * room) margin = kRestShare * room;
+    const bool slow = margin > 0;
+    if (slow && !demand_.limited && state_of(item).witness.known()) {
+      margin = margin > kRestShare * room ? margin : kRestShare * room;
+    }
     return margin - room;
   }
 
