@@ -367,9 +367,8 @@ class Query {
     const float room = tolerance > kRounding ? tolerance - kRounding : 0;
     auto margin = static_cast<float>(margin_of(pair_of(item)));
     const bool slow = margin > 0;
-    if (slow && !demand_.limited && state_of(item).witness.known()) {
-      margin = margin > kRestShare * room ? margin : kRestShare * room;
-    }
+    const bool anew = item.rest <= 0;  // a first answer soon
+    if (slow && !anew && !demand_.limited && margin < kRestShare * room) margin = kRestShare * room;
     return margin - room;
   }
 
