@@ -111,6 +111,7 @@ class Search {
   std::uint32_t expand(const Box& box, const Transform& to_node, const RegionNode& node,
                        float scale2) noexcept {
     pace_.charge(1);
+    centre_ = centre_in(box, to_node);
     const std::uint32_t children = children_of(node);
     const std::uint32_t near =
         children & kernels_.test_boxes(box, to_node, node, threshold_squared_ / scale2, squared_);
@@ -139,7 +140,7 @@ class Search {
       if (pairs) {
         add_pair(parent.first + slot, triangle_of(*frame_.b, b), squared);
       } else {
-        push({child_name(node, slot), b, squared});
+        push({child_name(node, slot), b, squared, centres(parent, slot, squared)});
       }
     }
     nearest_to_top(bottom);
@@ -156,10 +157,38 @@ class Search {
       if (pairs) {
         add_pair(triangle_of(*frame_.a, a), parent.first + slot, squared);
       } else {
-        push({a, child_name(node, slot), squared});
+        push({a, child_name(node, slot), squared, centres(parent, slot, squared)});
       }
     }
     nearest_to_top(bottom);
+  }
+
+  struct Centre {
+    float x, y, z;
+  };
+
+  static Centre centre_in(const Box& box, const Transform& map) noexcept {
+    const float* r = map.rotation;
+    const float* t = map.translation;
+    const float x = box.x[3];
+    const float y = box.y[3];
+    const float z = box.z[3];
+    return {map.scale * (r[0] * x + r[1] * y + r[2] * z) + t[0],
+            map.scale * (r[3] * x + r[4] * y + r[5] * z) + t[1],
+            map.scale * (r[6] * x + r[7] * y + r[8] * z) + t[2]};
+  }
+
+  /// Of the box looked at last and a child; asked for where the boxes overlap only.
+  float centres(const RegionNode& node, std::uint32_t slot, float squared) const noexcept {
+    if (squared > 0) return 0;
+    const float x = node.centre[0][slot] - centre_.x;
+    const float y = node.centre[1][slot] - centre_.y;
+    const float z = node.centre[2][slot] - centre_.z;
+    return x * x + y * y + z * z;
+  }
+
+  static bool goes_first(const Candidate& p, const Candidate& q) noexcept {
+    return p.squared < q.squared || (p.squared == q.squared && p.centres < q.centres);
   }
 
   /// Sorts the candidates from `bottom` on, at most a node's children. Half the work until the
@@ -168,7 +197,7 @@ class Search {
     for (std::uint32_t i = bottom + 1; i < size_; ++i) {
       const Candidate next = scratch_.stack[i];
       std::uint32_t hole = i;
-      for (; hole > bottom && scratch_.stack[hole - 1].squared < next.squared; --hole) {
+      for (; hole > bottom && goes_first(scratch_.stack[hole - 1], next); --hole) {
         scratch_.stack[hole] = scratch_.stack[hole - 1];
       }
       scratch_.stack[hole] = next;
@@ -281,6 +310,7 @@ class Search {
   float threshold_squared_ = 0;
   float passed_squared_ = kFar;
   float squared_[kBatch];  // of the children looked at last, in their image's unit
+  Centre centre_{};        // of the single box, beside them
   std::uint32_t size_ = 0;
   std::uint32_t pending_ = 0;
   CrossingList* crossings_ = nullptr;
