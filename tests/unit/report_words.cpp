@@ -73,6 +73,21 @@ TEST(ReportWords, replay_says_times_touch_and_certificate) {
   expect_said(text, "exact: a tick took");
 }
 
+TEST(ReportWords, replay_counts_broken_certificates_where_the_scene_is_known) {
+  ReportInput input;
+  input.lines.resize(2);
+  input.lines[0].name = "exact";
+  input.lines[0].exact = true;
+  input.lines[0].ticks = test::some_ticks(4);
+  input.lines[1].name = "fast";
+  input.lines[1].ticks = test::some_ticks(4);
+  EXPECT_EQ(joined(input).find("broken"), std::string::npos);
+  input.judged = {.delta_m = 5e-4, .radius_m = 0.01};
+  expect_said(joined(input), "It was never broken.");
+  input.lines[1].ticks[2].min_distance_m += 4e-5;  // the bound is 3e-5
+  expect_said(joined(input), "It was broken in 1 tick: the true distance lay outside the bound.");
+}
+
 TEST(ReportWords, run_says_what_was_missed_and_why_it_stopped) {
   ReportInput input;
   input.kind = ReportKind::run;
