@@ -100,7 +100,7 @@ constexpr Key<Scene> kForceKeys[] = {
      "slew"},
     {"contact_damping_N_s_per_m", "N s/m",
      Real<Scene>{[](Scene& s) -> double& { return s.contact_damping_N_s_per_m; }, 0, kMost},
-     "`palpate run`: contacts resist velocity too, in any one direction, with at most their force"},
+     "contacts resist velocity too, in any one direction, with at most their force"},
     {"coupling", "",
      Choice<Scene>{kCouplings,
                    [](Scene& s, std::size_t i) { s.coupling = static_cast<Coupling>(i); },
@@ -211,7 +211,7 @@ constexpr Key<PairNames> kPairKeys[] = {
     {"b", "", Text<PairNames>{[](PairNames& p, const std::string& text) { p.b = text; }},
      "name of another body", true},
     {"friction", "1", Real<PairNames>{[](PairNames& p) -> double& { return p.friction; }, 0, 1e6},
-     "`palpate run`: coefficient of Coulomb friction, with stick, where one of them is the tool"},
+     "coefficient of Coulomb friction, with stick, where one of them is the tool"},
 };
 
 constexpr Table<Scene> kTables[] = {

@@ -45,6 +45,8 @@ struct DeviceState {
   Twist twist;                 ///< of the tool; meaningful where Capabilities::senses_twist
   std::uint32_t buttons = 0;   ///< a bit a button, 1 = pressed
   std::uint32_t faults = 0;    ///< bits of DeviceFault that hold now
+  /// The device does not know its zero yet: it renders no force, and the pose means nothing.
+  bool homing = false;
 };
 
 /// What the device is asked to render.
@@ -92,8 +94,8 @@ class Device {
   /// cannot.
   [[nodiscard]] virtual std::optional<DeviceProblem> open() = 0;
 
-  /// Begins the exchange. May block and allocate. Readings arrive soon after. The problem where it
-  /// cannot.
+  /// Begins the exchange. May block and allocate. Readings arrive soon after, those of a device
+  /// that is homing too. The problem where it cannot.
   [[nodiscard]] virtual std::optional<DeviceProblem> start() = 0;
 
   /// Takes the newest reading. True where it is newer than the one last taken; else `out` is left

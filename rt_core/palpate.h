@@ -143,6 +143,29 @@ palpate_status palpate_get_contact(const palpate_engine* engine, uint32_t index,
 palpate_status palpate_predict(const palpate_engine* engine, const palpate_pose* tool,
                                double force_N[3], double torque_Nm[3]);
 
+#define PALPATE_STICK_WORDS 18
+
+/* What sticks between the tool and one other body (force/friction.hpp). */
+typedef struct palpate_stick {
+  double opaque[PALPATE_STICK_WORDS];
+} palpate_stick;
+
+/* Nothing touches: at the start, and after a jump of the poses. sticks: [count] */
+void palpate_release(palpate_stick* sticks, uint32_t count);
+
+/* Adds Coulomb friction with stick to the wrench of the last tick, which palpate_predict(),
+ * palpate_damp() and palpate_step_coupling() then start from. Once after each tick. The engine's
+ * own limits of force belong off then. coefficients: [pair_count], >= 0, 0 for none; sticks:
+ * [pair_count], one engine's. O(contacts + pairs). */
+palpate_status palpate_add_friction(palpate_engine* engine, const double* coefficients,
+                                    palpate_stick* sticks, double force_N[3], double torque_Nm[3]);
+
+/* The wrench of the last tick with contacts that resist the tool's velocity, by at most their own
+ * force (force/linear_contact.hpp). damping_s: damping over stiffness, >= 0. O(1). */
+palpate_status palpate_damp(const palpate_engine* engine, const double linear_m_per_s[3],
+                            const double angular_rad_per_s[3], double damping_s, double force_N[3],
+                            double torque_Nm[3]);
+
 /* Virtual coupling (force/coupling.hpp): the hand feels a spring to a simulated tool that feels the
  * contacts, however stiff they are. The engine's own limits of force belong off then. */
 typedef struct palpate_coupling_settings {

@@ -7,6 +7,7 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/force/coupling.hpp"
+#include "rt_core/force/friction.hpp"
 #include "rt_core/force/linear_contact.hpp"
 #include "rt_core/palpate.h"
 #include "rt_core/palpate_rt.hpp"
@@ -19,7 +20,9 @@ struct palpate_engine {
   palpate::Engine* engine = nullptr;
   std::span<const palpate::Contact> contacts;
   std::uint32_t tool = 0;
-  palpate::force::LinearContact felt;  // of the last tick
+  palpate::force::LinearContact felt;  // of the last tick, with what was added to it
+  std::span<const palpate::BodyPair> pairs;
+  palpate::Settings settings;
 };
 
 namespace palpate {
@@ -143,6 +146,17 @@ static_assert(sizeof(force::VirtualTool) <= sizeof(palpate_coupling));
 static_assert(alignof(force::VirtualTool) <= alignof(palpate_coupling));
 static_assert(std::is_trivially_copyable_v<force::VirtualTool>);
 
+static_assert(sizeof(force::Stick) == sizeof(palpate_stick));
+static_assert(alignof(force::Stick) <= alignof(palpate_stick));
+static_assert(std::is_trivially_copyable_v<force::Stick>);
+
+bool sound(std::span<const double> coefficients) noexcept {
+  for (const double c : coefficients) {
+    if (!finite(c) || !(c >= 0)) return false;
+  }
+  return true;
+}
+
 force::VirtualTool* tool_of(palpate_coupling* coupling) noexcept {
   return std::launder(static_cast<force::VirtualTool*>(static_cast<void*>(coupling->opaque)));
 }
@@ -228,6 +242,8 @@ palpate_status palpate_create(const palpate_scene* scene, const palpate_settings
   palpate_engine* front = made.data();
   front->bodies = scene->bodies;
   front->tool = scene->tool;
+  front->pairs = palpate::scene_of(*scene).pairs;
+  front->settings = how;
   const Status status = palpate::create(
       palpate::scene_of(*scene), how, palpate::limits_of(*limits),
       {static_cast<std::byte*>(memory) + palpate::kFront, size - palpate::kFront}, front->engine);
@@ -252,6 +268,7 @@ palpate_status palpate_restore(const palpate_scene* scene, const palpate_limits*
   if (status != Status::ok) return palpate::code(status);
   kept[0].bodies = scene->bodies;
   kept[0].engine = found;
+  kept[0].pairs = palpate::scene_of(*scene).pairs;
   kept[0].contacts = {};  // those of the last tick are read before the copy is made
   *out = kept.data();
   return PALPATE_OK;
@@ -261,7 +278,9 @@ palpate_status palpate_configure(palpate_engine* engine, const palpate_settings*
   palpate::Settings how;
   if (engine == nullptr || settings == nullptr || !palpate::settings_of(*settings, how))
     return PALPATE_BAD_ARGUMENT;
-  return palpate::code(palpate::configure(*engine->engine, how));
+  const Status status = palpate::configure(*engine->engine, how);
+  if (status == Status::ok) engine->settings = how;
+  return palpate::code(status);
 }
 
 palpate_status palpate_tick(palpate_engine* engine, const palpate_pose* poses,
@@ -306,6 +325,57 @@ palpate_status palpate_predict(const palpate_engine* engine, const palpate_pose*
     return PALPATE_BAD_ARGUMENT;
   if (!palpate::sound(tool)) return palpate::code(Status::bad_pose);
   const palpate::Wrench wrench = palpate::force::predicted(engine->felt, palpate::pose_of(*tool));
+  palpate::put(wrench.force_N, force_N);
+  palpate::put(wrench.torque_Nm, torque_Nm);
+  return PALPATE_OK;
+}
+
+void palpate_release(palpate_stick* sticks, uint32_t count) {
+  if (sticks == nullptr) return;
+  for (std::uint32_t i = 0; i < count; ++i) new (sticks[i].opaque) palpate::force::Stick();
+}
+
+palpate_status palpate_add_friction(palpate_engine* engine, const double* coefficients,
+                                    palpate_stick* sticks, double force_N[3], double torque_Nm[3]) {
+  if (engine == nullptr || coefficients == nullptr || sticks == nullptr || force_N == nullptr ||
+      torque_Nm == nullptr || !palpate::sound({coefficients, engine->pairs.size()})) {
+    return PALPATE_BAD_ARGUMENT;
+  }
+  const std::size_t pairs = engine->pairs.size();
+  auto* first = std::launder(static_cast<palpate::force::Stick*>(static_cast<void*>(sticks)));
+  palpate::force::Friction friction({coefficients, pairs}, {first, pairs});
+  palpate::TickResult result;
+  result.wrench = engine->felt.wrench;
+  result.stiffness = engine->felt.stiffness;
+  result.contacts = engine->contacts;
+  friction.add(engine->pairs, engine->tool, engine->settings, {engine->poses, engine->bodies},
+               result);
+  engine->felt.wrench = result.wrench;
+  engine->felt.stiffness = result.stiffness;
+  palpate::put(result.wrench.force_N, force_N);
+  palpate::put(result.wrench.torque_Nm, torque_Nm);
+  return PALPATE_OK;
+}
+
+palpate_status palpate_damp(const palpate_engine* engine, const double linear_m_per_s[3],
+                            const double angular_rad_per_s[3], double damping_s, double force_N[3],
+                            double torque_Nm[3]) {
+  if (engine == nullptr || linear_m_per_s == nullptr || angular_rad_per_s == nullptr ||
+      force_N == nullptr || torque_Nm == nullptr || !palpate::finite(damping_s) ||
+      !(damping_s >= 0)) {
+    return PALPATE_BAD_ARGUMENT;
+  }
+  palpate::Vec6 velocity{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    velocity[i] = linear_m_per_s[i];
+    velocity[i + 3] = angular_rad_per_s[i];
+    if (!palpate::finite(velocity[i]) || !palpate::finite(velocity[i + 3])) {
+      return PALPATE_BAD_ARGUMENT;
+    }
+  }
+  const palpate::force::LinearContact& felt = engine->felt;
+  const palpate::Wrench wrench =
+      palpate::force::damped(felt.wrench, felt.stiffness, velocity, damping_s);
   palpate::put(wrench.force_N, force_N);
   palpate::put(wrench.torque_Nm, torque_Nm);
   return PALPATE_OK;

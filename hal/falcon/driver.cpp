@@ -18,7 +18,7 @@ constexpr std::uint64_t kReplyWithin_ns = 20'000'000;
 /// In a row: 0.2 s without an answer.
 constexpr std::uint32_t kSilentRequestsToFault = 10;
 constexpr std::uint32_t kBadCountsToFault = 5;
-constexpr double kHomingWithin_s = 60.0;
+constexpr double kFirstReadingWithin_s = 2.0;
 constexpr std::uint8_t kGreenLed = 0x2;
 constexpr std::uint8_t kRedLed = 0x8;
 
@@ -72,18 +72,19 @@ bool FalconDriver::take(const Reply& reply, DeviceState& out) noexcept {
   lost_its_zero_ = lost_its_zero_ || (was_homed && !homed_);
   posed_ = false;
   // The coordinates jump with the reply that ends the homing: it is the first to be relied on.
-  if (!homed_) return false;
-  theta_ = angles_of(reply.counts);
-  posed_ = forward(theta_, position_m_);
-  bad_counts_ = posed_ ? 0 : bad_counts_ + 1;
-  if (!posed_) return false;
+  if (homed_) {
+    theta_ = angles_of(reply.counts);
+    posed_ = forward(theta_, position_m_);
+    bad_counts_ = posed_ ? 0 : bad_counts_ + 1;
+    if (!posed_) return false;
+  }
+  out = {};
   out.sequence = ++sequence_;
   // The encoders were read after the request left: the reading is at most as old as this.
   out.time_ns = sent_ns_;
-  out.pose = {position_m_ - kMiddle_m, {}};
-  out.twist = {};
+  if (posed_) out.pose.position_m = position_m_ - kMiddle_m;
   out.buttons = reply.buttons;
-  out.faults = kNoDeviceFault;
+  out.homing = !homed_;
   return true;
 }
 
@@ -125,14 +126,12 @@ std::uint32_t FalconDriver::faults(std::uint64_t /*now_ns*/) const noexcept {
   return faults;
 }
 
-double FalconDriver::first_reading_within_s() const noexcept { return kHomingWithin_s; }
+double FalconDriver::first_reading_within_s() const noexcept { return kFirstReadingWithin_s; }
 
 DeviceProblem FalconDriver::why_no_reading() const {
   if (!replied_)
     return {"first reading", "the firmware does not answer", "plug the device in again"};
-  if (homed_) return {"first reading", "its encoders stand where no arm can be", "home it again"};
-  return {"homing", "the arms have not found their zero",
-          "start again, pull the grip all the way out, then push it all the way in"};
+  return {"first reading", "its encoders stand where no arm can be", "home it again"};
 }
 
 }  // namespace palpate::hal::falcon

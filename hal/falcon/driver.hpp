@@ -2,9 +2,9 @@
 // The driver of the Novint Falcon: three axes of position and force, four buttons.
 //
 // The device answers one request at a time, so that its rate is the round trip's, about 1 kHz.
-// Readings come once all three arms are homed (the user pulls the grip all the way out and pushes
-// it in again); until then the motors are off. World axes: x right, y up, z towards the user;
-// origin in the middle of the workspace.
+// It is homing until all three arms have found their zero (the user pulls the grip all the way out
+// and pushes it in again); until then the motors are off. World axes: x right, y up, z towards the
+// user; origin in the middle of the workspace.
 #pragma once
 
 #include <cstdint>

@@ -10,6 +10,9 @@
 namespace palpate::hal::mock {
 namespace {
 
+constexpr std::uint8_t kPositionOnly = 3;
+constexpr std::uint8_t kForceOnly = 3;
+
 bool is_finite(const Vec3d& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -23,7 +26,9 @@ Vec3d limited(Vec3d v, double max_length) {
 }  // namespace
 
 MockDevice::MockDevice(HandParameters hand, const Options& options)
-    : options_(options), parameters_(std::move(hand)) {}
+    : options_(options), parameters_(std::move(hand)) {
+  if (options_.rendered_dof <= kForceOnly) options_.max_torque_Nm = 0;
+}
 
 MockDevice::~MockDevice() { stop(); }
 
@@ -32,6 +37,8 @@ Capabilities MockDevice::capabilities() const noexcept {
   c.max_force_N = options_.max_force_N;
   c.max_torque_Nm = options_.max_torque_Nm;
   c.rate_Hz = options_.rate_Hz;
+  c.sensed_dof = options_.sensed_dof;
+  c.rendered_dof = options_.rendered_dof;
   c.senses_twist = true;
   return c;
 }
@@ -103,8 +110,15 @@ void MockDevice::publish(std::uint64_t time_ns) noexcept {
   DeviceState state;
   state.sequence = ++sequence_;
   state.time_ns = time_ns;
-  state.pose = hand_->pose();
-  state.twist = hand_->twist();
+  state.homing = is_homing(time_ns);
+  if (!state.homing) {
+    state.pose = hand_->pose();
+    state.twist = hand_->twist();
+  }
+  if (options_.sensed_dof <= kPositionOnly) {
+    state.pose.orientation = {};
+    state.twist.angular_rad_per_s = {};
+  }
   state.faults = faults();
   if (options_.faults.empty()) {
     states_.write(state);
@@ -141,6 +155,10 @@ double MockDevice::seconds(std::uint64_t time_ns) const noexcept {
   return 1e-9 * static_cast<double>(time_ns - zero_ns_);
 }
 
+bool MockDevice::is_homing(std::uint64_t time_ns) const noexcept {
+  return seconds(time_ns) < options_.homing_s;
+}
+
 Wrench MockDevice::wrench_in_force(std::uint64_t time_ns) noexcept {
   // The commands' mailbox keeps its own copy; an unchanged one is judged by its expiry again in
   // each period.
@@ -150,7 +168,7 @@ Wrench MockDevice::wrench_in_force(std::uint64_t time_ns) noexcept {
     faults_.fetch_or(kDeviceBadCommand, std::memory_order_relaxed);
     return {};
   }
-  if (time_ns >= command_.expires_ns || unplugged_) return {};
+  if (time_ns >= command_.expires_ns || unplugged_ || is_homing(time_ns)) return {};
   return {limited(wrench.force_N, options_.max_force_N),
           limited(wrench.torque_Nm, options_.max_torque_Nm)};
 }

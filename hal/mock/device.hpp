@@ -24,9 +24,12 @@ enum class TimeBase {
 struct Options {
   double rate_Hz = 2000.0;  ///< of readings; > 0
   TimeBase time_base = TimeBase::real;
-  int fifo_priority = 0;       ///< of the thread, 1 to 98; 0 or not permitted: an ordinary thread
-  double max_force_N = 20.0;   ///< what it renders at most
-  double max_torque_Nm = 1.0;  ///< what it renders at most
+  int fifo_priority = 0;        ///< of the thread, 1 to 98; 0 or not permitted: an ordinary thread
+  double homing_s = 0;          ///< so long it looks for its zero, from the hand's time zero
+  std::uint8_t sensed_dof = 6;  ///< 3: its readings say nothing of the orientation
+  std::uint8_t rendered_dof = 6;  ///< 3: it renders no torque
+  double max_force_N = 20.0;      ///< what it renders at most
+  double max_torque_Nm = 1.0;     ///< what it renders at most; 0 with rendered_dof 3
   /// What goes wrong, from the hand's time zero. A reading has no bytes here: one that is truncated
   /// or corrupted is one that a packet check has refused. While unplugged nothing is rendered.
   std::vector<FaultWindow> faults;
@@ -52,6 +55,9 @@ class MockDevice final : public Device {
   /// call sets time zero of the hand and publishes the first reading.
   void advance_to(std::uint64_t time_ns) noexcept;
 
+  /// Where the hand is, sensed or not. Virtual time only, after open().
+  [[nodiscard]] const Pose& hand_pose() const noexcept { return hand_->pose(); }
+
  private:
   void run() noexcept;
   void begin_at(std::uint64_t time_ns) noexcept;
@@ -59,6 +65,7 @@ class MockDevice final : public Device {
   void publish(std::uint64_t time_ns) noexcept;
   void publish_faulty(DeviceState state) noexcept;
   [[nodiscard]] double seconds(std::uint64_t time_ns) const noexcept;
+  [[nodiscard]] bool is_homing(std::uint64_t time_ns) const noexcept;
   [[nodiscard]] Wrench wrench_in_force(std::uint64_t time_ns) noexcept;
 
   Options options_;

@@ -13,8 +13,7 @@ constexpr std::uint32_t kControlTimeout_ms = 500;
 constexpr double kMicro = 1e-6;
 /// While nobody wants a force the device is told so again and again: one such packet may be lost.
 constexpr std::uint64_t kNoForceEvery_ns = 10'000'000;
-/// A person may have to bring the tool to where the device finds its zero.
-constexpr double kFirstReadingWithin_s = 30.0;
+constexpr double kFirstReadingWithin_s = 2.0;
 
 std::size_t copy(const Packet& packet, OutBuffer& out) noexcept {
   static_assert(kPacketBytes <= kMaxOutBytes);
@@ -142,10 +141,6 @@ std::uint32_t HostDriver::faults(std::uint64_t /*now_ns*/) const noexcept {
 double HostDriver::first_reading_within_s() const noexcept { return kFirstReadingWithin_s; }
 
 DeviceProblem HostDriver::why_no_reading() const {
-  if (end_.is_homing()) {
-    return {"homing", "the device has not found its zero",
-            "move the tool through its range, as the maker says, and start again"};
-  }
   if (end_.counters().refused > 0) {
     return {"first reading", "every packet of the device is refused",
             "update the device's firmware to docs/PROTOCOL.md"};

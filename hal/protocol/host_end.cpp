@@ -66,24 +66,24 @@ bool HostEnd::receive(std::span<const std::byte> packet, std::uint64_t arrival_n
   last_sequence_ = s.sequence;
   last_device_ns_ = s.device_time_ns;
   const std::uint64_t time_ns = clock_map_.host_time(s.device_time_ns, arrival_ns);
-  homing_ = s.mode == Mode::homing;
-  if (homing_) return false;
 
+  out = {};
   out.sequence = sequence_;
   out.time_ns = time_ns;
-  out.pose = s.is_joint_state ? chain_.pose(s.joint_counts)
-                              : Pose{metres(s.position_nm), unit_quaternion(s.orientation)};
-  out.twist = {};
   out.buttons = s.buttons;
   out.faults = faults_of(s);
+  homing_ = out.homing = s.mode == Mode::homing;
+  if (homing_) return true;
+  out.pose = s.is_joint_state ? chain_.pose(s.joint_counts)
+                              : Pose{metres(s.position_nm), unit_quaternion(s.orientation)};
   if (!chain_.is_within_ends(s.joint_counts)) out.faults |= kDeviceBadReading;
   counts_ = s.joint_counts;
   return true;
 }
 
 Packet HostEnd::command(const DeviceCommand& command, std::uint64_t now_ns) noexcept {
-  const bool in_force = now_ns < command.expires_ns && is_finite(command.wrench.force_N) &&
-                        is_finite(command.wrench.torque_Nm);
+  const bool in_force = !homing_ && now_ns < command.expires_ns &&
+                        is_finite(command.wrench.force_N) && is_finite(command.wrench.torque_Nm);
   const std::uint64_t left_us = in_force ? (command.expires_ns - now_ns) / kNsPerUs : 0;
   if (left_us == 0) return no_force();
   Command c;

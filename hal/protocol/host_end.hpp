@@ -27,15 +27,17 @@ class HostEnd {
   explicit HostEnd(const Capabilities& capabilities, const SerialChain& chain = {}) noexcept
       : capabilities_(capabilities), chain_(chain) {}
 
-  /// A packet that has come in. True, and `out` written, where it is a newer reading that can be
-  /// relied on (the device is not homing). Packets that are refused or outdated are counted.
+  /// A packet that has come in. True, and `out` written, where it is a newer reading; while the
+  /// device is homing its pose is left at the origin. Packets that are refused or outdated are
+  /// counted.
   /// @param arrival_ns  host clock; never runs backwards
   [[nodiscard]] bool receive(std::span<const std::byte> packet, std::uint64_t arrival_ns,
                              DeviceState& out) noexcept;
 
-  /// The packet that asks for a command, or for no force where the command has expired or is not
-  /// finite. The life that it gives the device is what is left of the command's own, at most the
-  /// device's; forces beyond the wire's range are cut to it.
+  /// The packet that asks for a command, or for no force where the command has expired, is not
+  /// finite, or the newest reading says that the device is homing. The life that it gives the
+  /// device is what is left of the command's own, at most the device's; forces beyond the wire's
+  /// range are cut to it.
   [[nodiscard]] Packet command(const DeviceCommand& command, std::uint64_t now_ns) noexcept;
 
   /// The packet that asks for no force.
@@ -43,16 +45,13 @@ class HostEnd {
 
   [[nodiscard]] const LinkCounters& counters() const noexcept { return counters_; }
 
-  /// The newest reading said that the device does not know its zero yet.
-  [[nodiscard]] bool is_homing() const noexcept { return homing_; }
-
  private:
   Capabilities capabilities_;
   SerialChain chain_;
   JointCounts counts_{};  ///< of the newest reading
   ClockMap clock_map_;
   LinkCounters counters_;
-  bool homing_ = false;
+  bool homing_ = false;              ///< in the newest reading
   std::uint32_t last_sequence_ = 0;  ///< on the wire; 0: none yet
   std::uint64_t last_device_ns_ = 0;
   std::uint64_t sequence_ = 0;  ///< of the newest reading, without wrapping; from 1

@@ -36,8 +36,8 @@ class Driver {
   /// Directly before streaming begins. Blocks. The problem where it cannot.
   [[nodiscard]] virtual std::optional<DeviceProblem> begin(Transport& transport) = 0;
 
-  /// Bytes of one IN transfer. True, and `out` written, where they complete a newer reading that
-  /// can be relied on.
+  /// Bytes of one IN transfer. True, and `out` written, where they complete a newer reading: one
+  /// that can be relied on, or one that says that the device is homing.
   [[nodiscard]] virtual bool received(std::span<const std::byte> bytes, std::uint64_t now_ns,
                                       DeviceState& out) noexcept = 0;
 
@@ -56,7 +56,7 @@ class Driver {
   /// DeviceFault bits that do not come with a reading: an exchange that has broken down.
   [[nodiscard]] virtual std::uint32_t faults(std::uint64_t now_ns) const noexcept = 0;
 
-  /// How long the first reading may take, and why there is none: homing takes a person.
+  /// How long the first reading may take, and why there is none.
   [[nodiscard]] virtual double first_reading_within_s() const noexcept = 0;
   [[nodiscard]] virtual DeviceProblem why_no_reading() const = 0;
 };

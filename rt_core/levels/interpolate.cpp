@@ -37,11 +37,20 @@ class Group {
     parent_.excess = static_cast<float>(missing.excess);
     const double share = childrens_share(missing.excess);
     if (share >= 1) return false;
-    mix(contact_of_parent(a, b, d), share);
+    const LeafContact of_parent = contact_of_parent(a, b, d);
+    // A witness inside the solid says nothing of the surface: who has a contact keeps it.
+    if (!of_parent.found && d.lower_bound < pair_.delta && any_child_touches()) return false;
+    mix(of_parent, share);
     return missing.excess <= 1;
   }
 
  private:
+  bool any_child_touches() const noexcept {
+    std::uint32_t c = parent_.first_child;
+    while (c != kNone && work_.tree[c].report == kNone) c = work_.tree[c].next_sibling;
+    return c != kNone;
+  }
+
   double childrens_share(double parents_excess) const noexcept {
     if (parents_excess <= 1) return 0;
     double most = 0;

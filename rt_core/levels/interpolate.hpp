@@ -21,9 +21,10 @@ inline constexpr double kOwnContactFrom = 2;
 /// e_c = 1, where a child would be refined, the children's alone: continuous at both, and where a
 /// child comes within delta or leaves it. The parents are what the query has passed through, so the
 /// paper's conservative refinement below a stop is not needed. A parent with e_p <= 1 takes its
-/// children's place: so the front does not depend on how it came about. One query for each near
-/// parent of settled children that has a stopped one, or e_p < kOwnContactFrom, while the budget
-/// lasts; nothing else of the front is looked at.
+/// children's place: so the front does not depend on how it came about. Only a parent that is
+/// within delta and yet has no contact, because its witness lies inside the solid, leaves those of
+/// its children alone. One query for each near parent of settled children that has a stopped one,
+/// or e_p < kOwnContactFrom, while the budget lasts; nothing else of the front is looked at.
 void interpolate(Work& work) noexcept;
 
 /// Keeps a node inside the tree at hand for later ticks where its e_p < kOwnContactFrom.

@@ -74,6 +74,14 @@ TEST_P(GroundJaws, steadied_force_steps_at_most_half_as_far_again_as_the_exact_o
   }
 }
 
+TEST_P(GroundJaws, interpolated_force_steps_so_without_steadying_where_no_budget_ends_it) {
+  const Steps exact = largest_steps({.exact = true}, kUnlimited, GetParam(), false);
+  for (const double s0 : {0.005, 0.05}) {
+    const Steps felt = largest_steps({.s0 = s0}, kUnlimited, GetParam(), false);
+    EXPECT_LE(felt.force_N, 1.5 * exact.force_N) << "s0 " << s0;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Speeds, GroundJaws, testing::Values(0.1, 0.3), [](const auto& tested) {
   return std::to_string(static_cast<int>(1000 * tested.param)) + "_mm_per_s";
 });

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <string>
 
 #include "host_bake/models/models.hpp"
 #include "tests/support/baked_scene.hpp"
@@ -21,6 +22,7 @@ namespace {
 constexpr double kEpsilon_J = 1e-3;
 constexpr std::uint64_t kTicks = effort<std::uint64_t>(PALPATE_TICKS, PALPATE_TICKS / 20);
 constexpr double kRate_Hz = 1000;
+constexpr std::uint64_t kTicksPerPlace = 200;
 
 struct Place {
   const char* tool;
@@ -35,16 +37,16 @@ constexpr Place kPlaces[] = {
     {"golf_club", "golf_ball", 6000, {0, -0.0258, -0.006}, {0.004, 0.002, 0.005}},
 };
 
-/// A new place to go to every fifth of a second, at up to 0.04 m/s.
+/// A new place to go to every fifth of a second, at up to 0.04 m/s, for all of the run.
 std::vector<hal::mock::Waypoint> random_script(const Place& place) {
   std::mt19937 rng(3);
   std::uniform_real_distribution<double> u(-1, 1);
   std::vector<hal::mock::Waypoint> script;
-  for (int i = 0; i < 1000; ++i) {
+  for (std::uint64_t i = 0; i <= kTicks / kTicksPerPlace; ++i) {
     const Vec3d r = place.reach_m;
     const Pose pose{place.centre_m + Vec3d{r.x * u(rng), r.y * u(rng), r.z * u(rng)},
                     turn({0.02 * u(rng), 0.02 * u(rng), 0.05 * u(rng)})};
-    script.push_back({0.2 * i, pose});
+    script.push_back({kTicksPerPlace / kRate_Hz * static_cast<double>(i), pose});
   }
   // Begins and ends apart.
   script.front().pose.position_m = script.back().pose.position_m =
@@ -92,6 +94,9 @@ TEST_P(EnergyOfTheLoop, is_never_given_out) {
   if (kTicks == PALPATE_TICKS) {
     EXPECT_GT(r.truncated, 0u);
   }
+  RecordProperty("energy_uJ_min", std::to_string(1e6 * r.energy_J_min));
+  RecordProperty("energy_uJ", std::to_string(1e6 * r.energy_J));
+  RecordProperty("ticks_touching", std::to_string(r.touching));
   EXPECT_GE(r.energy_J_min, -kEpsilon_J)
       << r.energy_J << " J in all, " << r.touching << " touching";
 }

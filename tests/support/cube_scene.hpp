@@ -23,9 +23,11 @@ inline std::string cube_image() {
 
 /// @param engine  further keys of [engine]
 /// @param rest    further tables
-inline std::string cube_scene(const std::string& engine = {}, const std::string& rest = {}) {
-  return "[engine]\ndelta_m = 0.0005\n" + engine +
-         "\n[force]\nstiffness_N_per_m = 600.0\n"
+/// @param force   further keys of [force]
+inline std::string cube_scene(const std::string& engine = {}, const std::string& rest = {},
+                              const std::string& force = {}) {
+  return "[engine]\ndelta_m = 0.0005\n" + engine + "\n[force]\nstiffness_N_per_m = 600.0\n" +
+         force +
          "[[body]]\nname = \"tool\"\nimage = \"cube.palp\"\nrole = \"tool\"\n"
          "[[body]]\nname = \"wall\"\nimage = \"cube.palp\"\n" +
          rest;

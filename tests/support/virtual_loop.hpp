@@ -69,8 +69,8 @@ inline QueryOf::Function wall(double stiffness_N_per_m) {
 struct VirtualLoop {
   VirtualLoop(const hal::mock::HandParameters& hand, const LoopSettings& settings,
               QueryOf::Function function, std::size_t ring_capacity = 1u << 14,
-              double readings_Hz = 2000)
-      : device(hand, virtual_time(readings_Hz)),
+              const hal::mock::Options& options = virtual_time(2000))
+      : device(hand, options),
         clock(device),
         query(std::move(function)),
         ring(ring_capacity),

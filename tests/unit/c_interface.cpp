@@ -12,6 +12,8 @@
 
 #include "../support/tiny_image.hpp"
 #include "rt_core/force/coupling.hpp"
+#include "rt_core/force/friction.hpp"
+#include "rt_core/force/linear_contact.hpp"
 #include "rt_core/palpate.h"
 #include "rt_core/palpate_rt.hpp"
 
@@ -193,6 +195,91 @@ TEST(CInterface, foretells_the_wrench_nearby) {
   tool.position_m[0] -= 1e-4;
   ASSERT_EQ(palpate_predict(scene.engine, &tool, force_N, torque_Nm), PALPATE_OK);
   EXPECT_GT(force_N[0], r.force_N[0]);
+}
+
+TEST(CInterface, friction_and_damping_give_the_same_bits_as_in_cpp) {
+  CScene scene;
+  const AlignedBytes a = ball(), b = block();
+  ImageView views[2];
+  ASSERT_EQ(validate(a, views[0]), Status::ok);
+  ASSERT_EQ(validate(b, views[1]), Status::ok);
+  const BodyPair pairs[1] = {{0, 1}};
+  const Scene same{views, pairs, 0};
+  AlignedBytes memory(required_bytes(same, {}));
+  Engine* engine = nullptr;
+  const Settings settings{.delta_m = 0.1};
+  ASSERT_EQ(create(same, settings, {}, memory, engine), Status::ok);
+
+  const double coefficients[1] = {0.3};
+  force::Stick sticks[1];
+  force::Friction friction(coefficients, sticks);
+  palpate_stick c_sticks[1];
+  palpate_release(c_sticks, 1);
+  const double linear[3] = {-0.2, 0.1, 0}, angular[3] = {0, 0, 0.5};
+  const Vec6 velocity{-0.2, 0.1, 0, 0, 0, 0.5};
+  constexpr double kDamping_s = 0.01;
+
+  double along_N = 0;
+  for (int i = 0; i < kTicks; ++i) {
+    const Pose poses[2] = {{{1.4 - 0.002 * i, 0.003 * i, 0}, {}}, {}};
+    const palpate_result before = scene.tick(c_pose_of(poses[0]));
+    double force_N[3], torque_Nm[3];
+    ASSERT_EQ(palpate_add_friction(scene.engine, coefficients, c_sticks, force_N, torque_Nm),
+              PALPATE_OK);
+    TickResult r;
+    ASSERT_EQ(tick(*engine, poses, {}, r), Status::ok);
+    friction.add(pairs, 0, settings, poses, r);
+    EXPECT_EQ(std::memcmp(force_N, &r.wrench.force_N, sizeof force_N), 0);
+    EXPECT_EQ(std::memcmp(torque_Nm, &r.wrench.torque_Nm, sizeof torque_Nm), 0);
+    along_N = std::max(along_N, std::abs(force_N[1] - before.force_N[1]));
+    ASSERT_EQ(palpate_damp(scene.engine, linear, angular, kDamping_s, force_N, torque_Nm),
+              PALPATE_OK);
+    const Wrench damped = force::damped(r.wrench, r.stiffness, velocity, kDamping_s);
+    EXPECT_EQ(std::memcmp(force_N, &damped.force_N, sizeof force_N), 0);
+    EXPECT_EQ(std::memcmp(torque_Nm, &damped.torque_Nm, sizeof torque_Nm), 0);
+  }
+  EXPECT_GT(along_N, 1);
+}
+
+TEST(CInterface, released_friction_starts_afresh) {
+  CScene scene;
+  const double coefficients[1] = {0.3};
+  palpate_stick sticks[1];
+  palpate_release(sticks, 1);
+  double force_N[3], torque_Nm[3];
+  const auto felt_along = [&](double y_m) {
+    scene.tick(c_pose_of({{1.35, y_m, 0}, {}}));
+    EXPECT_EQ(palpate_add_friction(scene.engine, coefficients, sticks, force_N, torque_Nm),
+              PALPATE_OK);
+    return force_N[1];
+  };
+  const double untouched_N = felt_along(0);
+  EXPECT_LT(felt_along(0.001), untouched_N - 0.1);
+  palpate_release(sticks, 1);
+  EXPECT_NEAR(felt_along(0), untouched_N, 1e-9);
+}
+
+TEST(CInterface, refuses_unsound_friction_and_damping) {
+  CScene scene;
+  scene.tick(c_pose_of({{1.35, 0, 0}, {}}));
+  palpate_stick sticks[1];
+  palpate_release(sticks, 1);
+  palpate_release(nullptr, 1);
+  double force_N[3], torque_Nm[3];
+  for (const double bad : {-0.1, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(palpate_add_friction(scene.engine, &bad, sticks, force_N, torque_Nm),
+              PALPATE_BAD_ARGUMENT);
+    const double still[3] = {0, 0, 0};
+    EXPECT_EQ(palpate_damp(scene.engine, still, still, bad, force_N, torque_Nm),
+              PALPATE_BAD_ARGUMENT);
+    const double velocity[3] = {0, 0, bad};
+    EXPECT_EQ(palpate_damp(scene.engine, still, velocity, 0.01, force_N, torque_Nm),
+              std::isfinite(bad) ? PALPATE_OK : PALPATE_BAD_ARGUMENT);
+  }
+  const double coefficient = 0.3;
+  EXPECT_EQ(palpate_add_friction(scene.engine, &coefficient, nullptr, force_N, torque_Nm),
+            PALPATE_BAD_ARGUMENT);
+  EXPECT_EQ(palpate_damp(nullptr, nullptr, nullptr, 0, nullptr, nullptr), PALPATE_BAD_ARGUMENT);
 }
 
 TEST(CInterface, refuses_unsound_couplings) {

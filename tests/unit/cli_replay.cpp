@@ -2,6 +2,7 @@
 // `palpate replay` as a process.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -44,8 +45,9 @@ class Replay : public ::testing::Test {
     folder_.write("poses.csv", test::cube_poses(kTicks));
   }
 
-  void write_scene(const std::string& engine, const std::string& rest = "") {
-    folder_.write("scene.toml", test::cube_scene(engine, rest));
+  void write_scene(const std::string& engine, const std::string& rest = "",
+                   const std::string& force = "") {
+    folder_.write("scene.toml", test::cube_scene(engine, rest, force));
   }
 
   [[nodiscard]] std::string at(const std::string& name) const {
@@ -108,6 +110,52 @@ TEST_F(Replay, Cubes_approaching_give_distance_and_force) {
     EXPECT_NEAR(number(table[i][2]) - number(table[i][5]), number(table[i][11]), 1e-8);
   }
   EXPECT_EQ(folder_.files(), 5u);
+}
+
+/// Down on the wall, and along it by 0.05 mm a tick.
+constexpr const char* kSliding =
+    "t,body,px,py,pz,qw,qx,qy,qz\n0,tool,0.0102,0,0,1,0,0,0\n"
+    "0.001,tool,0.0102,0.00005,0,1,0,0,0\n0.002,tool,0.0102,0.0001,0,1,0,0,0\n";
+
+TEST_F(Replay, Friction_of_the_scene_holds_the_tool_and_slips) {
+  folder_.write("poses.csv", kSliding);
+  write_scene("", "[[pair]]\na = \"tool\"\nb = \"wall\"\nfriction = 0.25\n");
+  ASSERT_EQ(replay().status, 0);
+  const auto ticks = rows(test::read_file(at("ticks.csv")));
+  ASSERT_EQ(ticks.size(), 4u);
+  const double pressed_N = 600 * 0.0003;
+  EXPECT_NEAR(number(ticks[1][3]), 0, 1e-9);
+  EXPECT_NEAR(number(ticks[2][3]), -600 * 0.00005, 1e-6);     // sticks
+  EXPECT_NEAR(number(ticks[3][3]), -0.25 * pressed_N, 1e-6);  // slips
+  for (std::size_t i = 1; i < ticks.size(); ++i) EXPECT_NEAR(number(ticks[i][2]), pressed_N, 1e-6);
+}
+
+TEST_F(Replay, Damping_of_the_scene_resists_the_velocity_between_ticks) {
+  write_scene("", "[[pair]]\na = \"tool\"\nb = \"wall\"\n");
+  ASSERT_EQ(replay().status, 0);
+  const auto plain = rows(test::read_file(at("ticks.csv")));
+  write_scene("", "[[pair]]\na = \"tool\"\nb = \"wall\"\n", "contact_damping_N_s_per_m = 0.2\n");
+  ASSERT_EQ(replay().status, 0);
+  const auto damped = rows(test::read_file(at("ticks.csv")));
+  ASSERT_EQ(damped.size(), 1u + kTicks);
+  // 0.2 m/s into the wall: 0.04 N, at most as much again as the contact's own.
+  for (std::size_t i = 1; i < damped.size(); ++i) {
+    const double own_N = number(plain[i][2]);
+    EXPECT_NEAR(number(damped[i][2]), own_N + std::min(own_N, 0.04), 1e-6);
+  }
+}
+
+TEST_F(Replay, Limits_hold_for_friction_and_damping_too) {
+  folder_.write("poses.csv", kSliding);
+  write_scene("", "[[pair]]\na = \"tool\"\nb = \"wall\"\nfriction = 100\n", "max_force_N = 0.1\n");
+  ASSERT_EQ(replay().status, 0);
+  const auto ticks = rows(test::read_file(at("ticks.csv")));
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    EXPECT_NEAR(std::hypot(number(ticks[i][2]), number(ticks[i][3]), number(ticks[i][4])), 0.1,
+                1e-9);
+  }
+  // Limited together: the direction is that of both.
+  EXPECT_NEAR(number(ticks[2][3]) / number(ticks[2][2]), -0.05 / 0.3, 1e-6);
 }
 
 TEST_F(Replay, Text_of_numbers_is_the_shortest_that_reads_back) {

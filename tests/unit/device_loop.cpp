@@ -108,7 +108,7 @@ TEST(DeviceLoop, wall_is_felt_through_the_open_protocol) {
   EXPECT_LE(report.state_age.max_ns(), kMs);
 }
 
-TEST(DeviceLoop, wall_is_felt_through_the_falcon) {
+TEST(DeviceLoop, wall_is_felt_through_the_falcon_once_it_is_homed) {
   FalconDeviceOptions options;
   options.hand = pressing_hand();
   options.firmware_runs = true;
@@ -119,6 +119,40 @@ TEST(DeviceLoop, wall_is_felt_through_the_falcon) {
   EXPECT_EQ(report.state, LoopState::rendering);
   EXPECT_TRUE(report.faults.empty());
   EXPECT_NEAR(report.force_N_max, 1.0, 0.1);
+  EXPECT_NEAR(static_cast<double>(report.homing), 500, 10);
+  EXPECT_EQ(report.ticks, 3000 + report.homing);
+}
+
+TEST(DeviceLoop, falcon_that_nobody_homes_is_a_fault_without_any_force) {
+  FalconDeviceOptions options;
+  options.firmware_runs = true;
+  options.homed_after_s = 1e9;
+  FalconDevice model(options);
+  LoopSettings settings = seconds_of(1);
+  settings.safety.home_within_s = 0.5;
+  UsbLoop rig(model, std::make_unique<hal::falcon::FalconDriver>(std::vector<std::byte>{}),
+              settings);
+  const LoopReport& report = rig.run();
+  EXPECT_EQ(report.state, LoopState::fault);
+  EXPECT_TRUE(report.faults.has(Fault::not_homed));
+  EXPECT_EQ(report.queried, 0u);
+  EXPECT_EQ(model.motors(), hal::falcon::MotorValues{});
+}
+
+TEST(DeviceLoop, zero_that_is_lost_while_rendering_is_a_fault) {
+  OpenDevice model(pressing());
+  OpenLoop rig(model, seconds_of(2));
+  bool lost = false;
+  rig.pumped.each_step = [&] {
+    if (lost || norm(model.rendered().force_N) < 0.5) return;
+    lost = true;
+    model.set_homing(true);
+  };
+  const LoopReport& report = rig.run();
+  EXPECT_TRUE(lost);
+  EXPECT_EQ(report.state, LoopState::fault);
+  EXPECT_TRUE(report.faults.has(Fault::not_homed));
+  EXPECT_EQ(norm(model.rendered().force_N), 0.0);
 }
 
 TEST(DeviceLoop, unplugging_is_a_device_error_at_once) {

@@ -179,24 +179,33 @@ struct FalconRig : SimulatedRig {
       : SimulatedRig(a_model, a_clock, std::make_unique<FalconDriver>(some_firmware()),
                      std::move(faults)),
         model(a_model) {}
+  /// Begins, and waits until it is homed.
+  [[nodiscard]] std::optional<DeviceProblem> begin_homed() {
+    auto problem = begin();
+    for (int ms = 0; !problem && ms < 1000 && (ms == 0 || reading.homing); ++ms) {
+      run(kMs, [&] { push(0); });
+    }
+    return problem;
+  }
   FalconDevice& model;
 };
 
 bool has_force(const FalconDevice& model) { return model.motors() != MotorValues{}; }
 
-TEST(FalconDriver, readings_come_after_homing_and_motors_stay_off_before) {
+TEST(FalconDriver, readings_have_a_pose_after_homing_and_motors_stay_off_before) {
   VirtualClock clock;
   FalconDevice model({});
   FalconRig rig(model, clock);
-  ASSERT_FALSE(rig.device->open());
-  rig.command.expires_ns = ~std::uint64_t{0};
-  rig.command.wrench.force_N = {5, 0, 0};
-  rig.device->send(rig.command);  // somebody pushes already
-  const std::uint64_t before_ns = clock.now_ns();
-  ASSERT_FALSE(rig.device->start());
-  EXPECT_GT(clock.now_ns() - before_ns, 400 * kMs);
-  EXPECT_FALSE(has_force(model));
-  ASSERT_TRUE(rig.device->receive(rig.reading));
+  ASSERT_FALSE(rig.begin());
+  rig.run(400 * kMs, [&] {
+    rig.push(5);  // somebody pushes already
+    EXPECT_TRUE(rig.reading.homing);
+    EXPECT_EQ(norm(rig.reading.pose.position_m), 0.0);
+    EXPECT_FALSE(has_force(model));
+  });
+  EXPECT_GT(rig.reading.sequence, 200u);
+  rig.run(200 * kMs, [&] { rig.push(0); });
+  EXPECT_FALSE(rig.reading.homing);
   EXPECT_LT(norm(rig.reading.pose.position_m - model.position_m()), 1e-4);
 }
 
@@ -205,7 +214,7 @@ TEST(FalconDriver, force_pushes_the_grip_where_it_points) {
     VirtualClock clock;
     FalconDevice model({});
     FalconRig rig(model, clock);
-    ASSERT_FALSE(rig.begin());
+    ASSERT_FALSE(rig.begin_homed());
     rig.run(1500 * kMs, [&] {
       rig.push(0);
       rig.command.wrench.force_N = force;
@@ -222,7 +231,7 @@ TEST(FalconDriver, motors_are_never_beyond_their_limit) {
   VirtualClock clock;
   FalconDevice model({});
   FalconRig rig(model, clock);
-  ASSERT_FALSE(rig.begin());
+  ASSERT_FALSE(rig.begin_homed());
   rig.run(200 * kMs, [&] {
     rig.push(1e6);
     for (const std::int16_t m : model.motors()) ASSERT_LE(std::abs(m), kMaxMotorValue);
@@ -234,7 +243,7 @@ TEST(FalconDriver, silent_loop_leaves_no_force) {
   VirtualClock clock;
   FalconDevice model({});
   FalconRig rig(model, clock);
-  ASSERT_FALSE(rig.begin());
+  ASSERT_FALSE(rig.begin_homed());
   rig.run(100 * kMs, [&] { rig.push(2); });
   ASSERT_TRUE(has_force(model));
   rig.run(kCommandLife_ns + 3 * kMs, [] {});
@@ -246,7 +255,7 @@ TEST(FalconDriver, stop_turns_the_motors_off) {
   VirtualClock clock;
   FalconDevice model({});
   FalconRig rig(model, clock);
-  ASSERT_FALSE(rig.begin());
+  ASSERT_FALSE(rig.begin_homed());
   rig.run(100 * kMs, [&] { rig.push(2); });
   rig.device->stop();
   EXPECT_FALSE(has_force(model));
@@ -256,7 +265,7 @@ TEST(FalconDriver, mute_firmware_is_asked_again_and_then_given_up) {
   VirtualClock clock;
   FalconDevice model({});
   FalconRig rig(model, clock);
-  ASSERT_FALSE(rig.begin());
+  ASSERT_FALSE(rig.begin_homed());
   rig.run(100 * kMs, [&] { rig.push(2); });
   model.set_mute(true);
   rig.run(100 * kMs, [&] { rig.push(2); });
@@ -273,7 +282,7 @@ TEST(FalconDriver, short_replies_are_never_taken_for_readings) {
   VirtualClock clock;
   FalconDevice model({});
   FalconRig rig(model, clock);
-  ASSERT_FALSE(rig.begin());
+  ASSERT_FALSE(rig.begin_homed());
   rig.run(100 * kMs, [&] { rig.push(0); });
   const std::uint64_t before = rig.reading.sequence;
   model.shorten_replies(2);
@@ -286,24 +295,12 @@ TEST(FalconDriver, lost_zero_ends_the_force_and_is_a_fault) {
   VirtualClock clock;
   FalconDevice model({});
   FalconRig rig(model, clock);
-  ASSERT_FALSE(rig.begin());
+  ASSERT_FALSE(rig.begin_homed());
   rig.run(100 * kMs, [&] { rig.push(2); });
   model.forget_zero();
   rig.run(20 * kMs, [&] { rig.push(2); });
   EXPECT_FALSE(has_force(model));
   EXPECT_EQ(rig.device->faults(), kDeviceBadReading);
-}
-
-TEST(FalconDriver, user_who_does_not_home_it_is_told_how) {
-  VirtualClock clock;
-  FalconDeviceOptions options;
-  options.homed_after_s = 1e9;
-  FalconDevice model(options);
-  FalconRig rig(model, clock);
-  const auto problem = rig.begin();
-  ASSERT_TRUE(problem);
-  EXPECT_EQ(problem->phase, "homing");
-  EXPECT_FALSE(has_force(model));
 }
 
 TEST(FalconDriver, bad_line_gives_no_wrong_reading) {
@@ -315,7 +312,7 @@ TEST(FalconDriver, bad_line_gives_no_wrong_reading) {
   }
   script.push_back({FaultKind::truncate, 2, 100, 5, 0.02});
   FalconRig rig(model, clock, {{script, 1}, {script, 2}});
-  ASSERT_FALSE(rig.begin());
+  ASSERT_FALSE(rig.begin_homed());
   std::uint64_t last = 0, readings = 0;
   rig.run(20'000 * kMs, [&] {
     rig.push(1);

@@ -228,13 +228,26 @@ TEST(HostEnd, device_time_that_stands_still_is_no_new_reading) {
   EXPECT_FALSE(host.receive(encode(s), 2, out));
 }
 
-TEST(HostEnd, homing_readings_are_kept_back) {
+TEST(HostEnd, homing_readings_say_so_and_have_no_pose) {
   HostEnd host(some_capabilities());
   DeviceState out;
   State s = test::some_state();
   s.mode = Mode::homing;
-  EXPECT_FALSE(host.receive(encode(s), 1, out));
-  EXPECT_TRUE(host.is_homing());
+  EXPECT_TRUE(host.receive(encode(s), 1, out));
+  EXPECT_TRUE(out.homing);
+  DeviceCommand push;
+  push.expires_ns = 1'000'000;
+  push.wrench.force_N.x = 1;
+  Command sent;
+  ASSERT_EQ(decode(host.command(push, 1), sent), PacketError::none);
+  EXPECT_FALSE(sent.enable);
+  EXPECT_EQ(norm(out.pose.position_m), 0.0);
+  ++s.sequence;
+  ++s.device_time_ns;
+  s.mode = Mode::active;
+  EXPECT_TRUE(host.receive(encode(s), 2, out));
+  EXPECT_FALSE(out.homing);
+  EXPECT_GT(norm(out.pose.position_m), 0.0);
 }
 
 TEST(HostEnd, silenced_and_failed_device_is_a_fault_of_its_reading) {

@@ -83,7 +83,7 @@ Outcome pressed(const QueryOf::Function& scene, double rate_Hz) {
   settings.rate_Hz = rate_Hz;
   settings.periods = static_cast<std::uint64_t>(8 * rate_Hz);
   hal::mock::HandParameters hand = pressing_hand();
-  VirtualLoop rig(hand, settings, scene, 1u << 17, 2 * rate_Hz);
+  VirtualLoop rig(hand, settings, scene, 1u << 17, VirtualLoop::virtual_time(2 * rate_Hz));
   Outcome out{rig.run()};
   const auto records = rig.records();
   double low_m = 1, high_m = -1;

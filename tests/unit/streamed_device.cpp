@@ -194,16 +194,17 @@ TEST(StreamedDevice, overheated_motor_and_broken_sensor_reach_the_reading) {
   EXPECT_EQ(norm(model.rendered().force_N), 0.0);
 }
 
-TEST(StreamedDevice, homing_is_waited_for_and_named) {
+TEST(StreamedDevice, homing_is_seen_in_its_readings_and_renders_no_force) {
   VirtualClock clock;
   OpenDevice model({});
   model.set_homing(true);
   OpenRig rig(model, clock);
-  const auto problem = rig.begin();
-  ASSERT_TRUE(problem);
-  EXPECT_EQ(problem->phase, "homing");
+  ASSERT_FALSE(rig.begin());
+  EXPECT_EQ(rig.force_periods_in(50 * kMs, [&] { rig.push(3.0); }), 0u);
+  EXPECT_TRUE(rig.reading.homing);
   model.set_homing(false);
-  EXPECT_FALSE(rig.device->start());
+  EXPECT_GT(rig.force_periods_in(50 * kMs, [&] { rig.push(3.0); }), 40 * kPeriodsPerMs);
+  EXPECT_FALSE(rig.reading.homing);
 }
 
 TEST(StreamedDevice, device_that_never_speaks_is_named) {

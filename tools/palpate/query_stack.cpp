@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/palpate/query_stack.hpp"
 
-#include <algorithm>
 #include <cmath>
+
+#include "tools/palpate/scene_forces.hpp"
 
 namespace palpate::cli {
 namespace {
 
 /// An answer serves for so many periods of the server; a host's stalls are shorter.
 constexpr double kMostServerPeriods = 50;
-
-bool has_friction(const config::Scene& scene) {
-  return std::any_of(scene.friction.begin(), scene.friction.end(), [](double f) { return f > 0; });
-}
-
-/// Damping over stiffness.
-double damping_s(const config::Scene& scene) {
-  const double stiffness = scene.settings.stiffness_N_per_m;
-  return stiffness > 0 ? scene.contact_damping_N_s_per_m / stiffness : 0;
-}
 
 }  // namespace
 
@@ -41,10 +32,10 @@ QueryStack::QueryStack(const config::Scene& scene, Engine& engine, std::span<con
   }
   if (scene.coupling == config::Coupling::virtual_) {
     force::CouplingSettings settings = scene.virtual_tool;
-    settings.contact_damping_s = damping_s(scene);
+    settings.contact_damping_s = contact_damping_s(scene);
     top_ = &coupled_.emplace(*top_, settings, period_s);
   } else if (scene.contact_damping_N_s_per_m > 0) {
-    top_ = &damped_.emplace(*top_, damping_s(scene), period_s);
+    top_ = &damped_.emplace(*top_, contact_damping_s(scene), period_s);
   }
 }
 

@@ -171,7 +171,10 @@ void add_budget(CLI::App& command, Arguments& a) {
 
 void add_replay(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("replay", "Run the contact engine over recorded poses, without a device");
+      app.add_subcommand("replay",
+                         "Run the contact engine over recorded poses, without a device. Friction "
+                         "and contact damping of the scene are felt, with velocities from the "
+                         "poses of successive ticks; coupling and steadying are the loop's alone");
   const auto a = std::make_shared<Arguments>();
   command->add_option("SCENE", a->scene, "scene file (TOML)")->required();
   command->add_option("--poses", a->poses, "recorded poses (CSV)")->required();

@@ -9,6 +9,7 @@
 
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/scene_engine.hpp"
+#include "tools/palpate/scene_forces.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -25,9 +26,10 @@ std::uint64_t now_ns(void* clock) {
 class Replay {
  public:
   Replay(const config::Scene& scene, const PoseTrack& track, const ReplayOptions& options)
-      : scene_(scene),
+      : forces_(scene),
+        scene_(forces_.for_engine()),
         track_(track),
-        engine_(scene),
+        engine_(scene_),
         unlimited_(!options.budget_units && !scene.budget_us),
         clock_(options.processor_time ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC) {
     if (options.budget_units) budget_.units = *options.budget_units;
@@ -43,11 +45,13 @@ class Replay {
     rows.reserve(track_.ticks.size());
     std::vector<Pose> poses = engine_.start_poses();
     engine_.restart();
+    forces_.restart();
     for (std::size_t i = 0; i < track_.ticks.size(); ++i) {
       track_.apply(i, poses);
       TickRow& row = rows.emplace_back();
       row.t_s = track_.ticks[i].t_s;
-      const TickResult result = complete_tick(i, poses, row.time_ns);
+      TickResult result = complete_tick(i, poses, row.time_ns);
+      forces_.add(row.t_s, poses, result);
       note(result, row);
       if (listeners.contacts) listeners.contacts(i, result.contacts);
       if (listeners.progress && i % kShowEvery == 0) {
@@ -93,7 +97,8 @@ class Replay {
     out.certificate = result.certificate;
   }
 
-  const config::Scene& scene_;
+  SceneForces forces_;
+  config::Scene scene_;
   const PoseTrack& track_;
   SceneEngine engine_;
   bool unlimited_;

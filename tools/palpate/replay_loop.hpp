@@ -43,7 +43,7 @@ struct Recording {
 
 /// Replays the track options.repeat times, each with a new engine, so that all repetitions do the
 /// same work. Only the engine's tick lies between the two readings of the clock: nothing is
-/// formatted or written there.
+/// formatted or written there. The scene's friction and damping (SceneForces) are in the wrench.
 ///
 /// Where neither time nor units are limited the answer shall not be cut for want of memory either:
 /// a tick that runs out of nodes or contacts is done again by an engine with twice the room, up to

@@ -21,6 +21,7 @@
 #include "tools/palpate/run_summary.hpp"
 #include "tools/palpate/scene_engine.hpp"
 #include "tools/palpate/stable_scene.hpp"
+#include "tools/realtime/device_axes.hpp"
 #include "tools/realtime/loop.hpp"
 #include "tools/realtime/realtime_thread.hpp"
 #include "tools/realtime/scene_hand.hpp"
@@ -105,15 +106,12 @@ realtime::LoopSettings loop_settings(const RunOptions& options, const config::Sc
   settings.command_life_s = std::max(settings.command_life_s, two_periods_s);
   settings.safety.stale_after_s = std::max(settings.safety.stale_after_s, two_periods_s);
   settings.safety.connect_within_s = std::max(settings.safety.connect_within_s, two_periods_s);
-  settings.safety.max_force_N = std::min(scene.settings.max_force_N, device.max_force_N);
-  settings.safety.max_torque_Nm = std::min(scene.settings.max_torque_Nm, device.max_torque_Nm);
+  settings.safety.max_force_N = scene.settings.max_force_N;
+  settings.safety.max_torque_Nm = scene.settings.max_torque_Nm;
   settings.safety.max_force_slew_N_per_s = scene.max_force_slew_N_per_s;
   settings.safety.max_torque_slew_Nm_per_s = scene.max_torque_slew_Nm_per_s;
   settings.safety.max_power_W = scene.max_power_W;
-  constexpr std::uint8_t kPositionOnly = 3;
-  if (device.sensed_dof <= kPositionOnly) {
-    settings.fixed_orientation = scene.bodies[scene.tool].pose.orientation;
-  }
+  realtime::fit_to(device, scene.bodies[scene.tool].pose.orientation, settings);
   return settings;
 }
 
@@ -181,7 +179,7 @@ auto writing(const std::string& target, Function function) {
 Exit exit_of(realtime::FaultSet faults) {
   using realtime::Fault;
   const bool of_device = faults.has(Fault::stale_state) || faults.has(Fault::bad_state) ||
-                         faults.has(Fault::device_error);
+                         faults.has(Fault::device_error) || faults.has(Fault::not_homed);
   return of_device ? kDevice : faults.empty() ? kDone : kOther;
 }
 

@@ -162,6 +162,7 @@ nlohmann::json run_json(const RunOutcome& o) {
   j["ticks"] = r.ticks;
   j["rate_hz"] = o.rate_Hz;
   j["budget_us"] = o.budget_us ? nlohmann::json(*o.budget_us) : nlohmann::json();
+  j["homing"] = r.homing;
   j["missed"] = r.missed;
   j["overrun_ns_max"] = r.overrun_ns_max;
   j["latency_ns"] = percentiles_json(r.latency);

@@ -54,6 +54,7 @@ Loop::Loop(const LoopSettings& settings, hal::Device& device, ContactQuery& quer
       clock_(clock),
       telemetry_(telemetry),
       safety_(settings.safety, 1.0 / settings.rate_Hz),
+      passivity_(settings.passivity_limits),
       period_ns_(nanoseconds(1.0 / settings.rate_Hz)) {}
 
 void Loop::run(const std::atomic<bool>& stop) noexcept {
@@ -63,12 +64,13 @@ void Loop::run(const std::atomic<bool>& stop) noexcept {
       std::min<std::uint64_t>(settings_.warm_up_ticks, settings_.periods / 10);
   ThreadCounters before = thread_counters();
   std::uint64_t period = 0;
-  while (period < settings_.periods && !stop.load(std::memory_order_relaxed)) {
+  while (period - report_.homing < settings_.periods && !stop.load(std::memory_order_relaxed)) {
     if (report_.ticks == warm_up) before = thread_counters();
     const std::uint64_t late = run_tick(start_ns_ + period * period_ns_);
     report_.missed += late;
     period += 1 + late;
-    periods_passed_.store(period, std::memory_order_relaxed);
+    if (safety_.state() == LoopState::homing) report_.homing += 1 + late;
+    periods_passed_.store(period - report_.homing, std::memory_order_relaxed);
   }
   report_.counted = thread_counters() - before;
   report_.state = safety_.state();
@@ -99,11 +101,11 @@ std::uint64_t Loop::run_tick(std::uint64_t due_ns) noexcept {
 }
 
 void Loop::read_device(Tick& tick) noexcept {
-  const bool had_reading = reading_.sequence != 0;
+  const bool had_pose = reading_.sequence != 0 && !reading_.homing;
   const std::uint64_t before_ns = reading_.time_ns;
   const bool fresh = device_.receive(reading_);
   if (settings_.fixed_orientation) reading_.pose.orientation = *settings_.fixed_orientation;
-  if (fresh && had_reading) observe_energy(elapsed(before_ns, reading_.time_ns));
+  if (fresh && had_pose && !reading_.homing) observe_energy(elapsed(before_ns, reading_.time_ns));
   if (fresh) pose_before_ = reading_.pose;
   tick.state_age_ns = elapsed(reading_.time_ns, tick.begin_ns);
   const hal::DeviceState* newest = reading_.sequence != 0 ? &reading_ : nullptr;

@@ -41,12 +41,14 @@ struct LoopSettings {
   /// Stands in for the orientation that a device of three axes does not sense; absent: it does.
   std::optional<Quat> fixed_orientation;
   bool passivity_control = false;  ///< energy given out is taken back by a damper (passivity.hpp)
+  PassivityController::Limits passivity_limits;
   SafetySettings safety;
 };
 
 /// What a run did. Durations in ns.
 struct LoopReport {
   std::uint64_t ticks = 0;   ///< run
+  std::uint64_t homing = 0;  ///< periods that passed while the device was homing
   std::uint64_t missed = 0;  ///< periods that ended without a command of their own; ticks + missed
                              ///< = periods that passed
   std::uint64_t overrun_ns_max = 0;  ///< the latest command, after its period's end
@@ -77,7 +79,7 @@ class Loop {
        hal::Ring<TraceRecord>* telemetry);
 
   /// Runs until the periods are over or `stop` becomes true, then sends a last command of zero.
-  /// Once.
+  /// Once. Periods in which the device is homing come on top of those asked for.
   ///
   /// Time. Tick n is due at start + n * period and must have sent its command one period later. A
   /// tick that ends later has missed its deadline; the periods that it ran into are skipped, not
@@ -87,7 +89,7 @@ class Loop {
   /// After run().
   [[nodiscard]] const LoopReport& report() const noexcept { return report_; }
 
-  /// Periods that have passed so far; any thread.
+  /// Periods that have passed so far, homing left out; any thread.
   [[nodiscard]] std::uint64_t periods_passed() const noexcept {
     return periods_passed_.load(std::memory_order_relaxed);
   }

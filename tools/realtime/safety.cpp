@@ -65,6 +65,8 @@ std::string_view name(Fault fault) noexcept {
       return "bad_wrench";
     case Fault::device_error:
       return "device_error";
+    case Fault::not_homed:
+      return "not_homed";
   }
   return "unknown";
 }
@@ -79,6 +81,8 @@ std::string_view name(LoopState state) noexcept {
       return "rendering";
     case LoopState::fault:
       return "fault";
+    case LoopState::homing:
+      return "homing";
   }
   return "unknown";
 }
@@ -101,12 +105,27 @@ bool SafetyStage::accept(const hal::DeviceState* reading, double age_s) noexcept
     if (seconds(ticks_in_state_) > settings_.connect_within_s) raise(Fault::stale_state);
     return false;
   }
-  if (age_s > settings_.stale_after_s) raise(Fault::stale_state);
-  if (!is_finite(reading->pose)) raise(Fault::bad_state);
-  if ((reading->faults & ~kHarmless) != 0) raise(Fault::device_error);
-  if (state_ == LoopState::disconnected) enter(LoopState::armed);
-  accepted_ = state_ != LoopState::fault;
+  judge(*reading, age_s);
+  accepted_ = state_ == LoopState::armed || state_ == LoopState::rendering;
   return accepted_;
+}
+
+void SafetyStage::judge(const hal::DeviceState& reading, double age_s) noexcept {
+  if (state_ == LoopState::disconnected) enter(LoopState::homing);
+  if (age_s > settings_.stale_after_s) raise(Fault::stale_state);
+  if (!is_finite(reading.pose)) raise(Fault::bad_state);
+  if ((reading.faults & ~kHarmless) != 0) raise(Fault::device_error);
+  follow_homing(reading.homing);
+}
+
+void SafetyStage::follow_homing(bool homing) noexcept {
+  if (state_ == LoopState::homing && !homing) {
+    enter(LoopState::armed);
+  } else if (state_ == LoopState::homing) {
+    if (seconds(ticks_in_state_) > settings_.home_within_s) raise(Fault::not_homed);
+  } else if (homing) {
+    raise(Fault::not_homed);  // its coordinates are about to jump
+  }
 }
 
 Wrench SafetyStage::command(Status status, const Wrench& rendered,

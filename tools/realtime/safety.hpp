@@ -2,12 +2,12 @@
 // The last stage before the device: a state machine, ramps and limits between the rendered wrench
 // and the hand.
 //
-//   disconnected --first reading--> armed --arm_ticks good ticks--> rendering
-//        any state --a doubt--> fault (left by a new run only)
+//   disconnected --first reading--> homing --it knows its zero--> armed --arm_ticks good ticks-->
+//   rendering;   any state --a doubt--> fault (left by a new run only)
 //
-// Force is zero in `disconnected` and `armed`, ramps up after entering `rendering`, and ramps down
-// to zero after entering `fault`. Homing is over before: Device::start() returns with the first
-// reading that can be relied on, and a device that homes later falls silent.
+// Force is zero in `disconnected`, `homing` and `armed`, ramps up after entering `rendering`, and
+// ramps down to zero after entering `fault`. A device that need not home passes through `homing`
+// with its first reading.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,14 @@
 
 namespace palpate::realtime {
 
-enum class LoopState : std::uint8_t { disconnected = 0, armed = 1, rendering = 2, fault = 3 };
+/// The numbers are stable: trace records have them.
+enum class LoopState : std::uint8_t {
+  disconnected = 0,  ///< no reading has come yet
+  armed = 1,         ///< readings and contacts are watched
+  rendering = 2,
+  fault = 3,
+  homing = 4,  ///< between disconnected and armed: the device looks for its zero
+};
 
 /// Why force went to zero. The numbers are stable: bits of FaultSet and of trace records.
 enum class Fault : std::uint8_t {
@@ -30,8 +37,9 @@ enum class Fault : std::uint8_t {
   engine_error = 3,      ///< the contact engine returned an error
   bad_wrench = 4,        ///< the contact engine returned a number that is not finite
   device_error = 5,      ///< the device reported a fault of its own
+  not_homed = 6,         ///< the device has not found its zero within home_within_s, or lost it
 };
-inline constexpr std::uint8_t kFaultCount = 6;
+inline constexpr std::uint8_t kFaultCount = 7;
 
 /// Static storage. "stale_state" and so on; "disconnected" and so on.
 [[nodiscard]] std::string_view name(Fault fault) noexcept;
@@ -69,6 +77,7 @@ struct SafetySettings {
   /// (passivity.hpp): what follows is scaled by that, and back to full after this time.
   double hold_recovery_s = 0.05;
   double connect_within_s = 1.0;  ///< the first reading must come this soon
+  double home_within_s = 60.0;    ///< homing takes a person
   /// A hand moves 15 mm in this time at 0.3 m/s; longer than the stalls of a host without a
   /// real-time kernel (10 ms seen), so that those are reported as missed deadlines and not as a
   /// lost device.
@@ -102,6 +111,8 @@ class SafetyStage {
  private:
   [[nodiscard]] Wrench within_limits(const Wrench& rendered,
                                      const hal::Twist& twist) const noexcept;
+  void judge(const hal::DeviceState& reading, double age_s) noexcept;
+  void follow_homing(bool homing) noexcept;
   void raise(Fault fault) noexcept;
   void enter(LoopState state) noexcept;
   [[nodiscard]] double seconds(std::uint64_t ticks) const noexcept;
