@@ -139,22 +139,24 @@ void add_palpate(const config::Scene& scene, std::vector<Query>& out) {
   out.push_back(palpate_query(scene, {.exact = true, .delta_m = delta_m}, "palpate levels exact",
                               "all pairs of pieces nearer than delta; wrench"));
   out.push_back(palpate_query(scene, {.s0 = 0.025, .delta_m = delta_m}, "palpate levels s0 2.5 %",
-                              "the same, detail below s0 left out; wrench"));
+                              "the same without detail below s0; wrench"));
 }
 
 void print_row(const Query& query, const Query& truth, double delta_m) {
   std::vector<double> us;
-  double results = 0, worst_m = 0;
+  double results = 0, worst_m = kNone;
   for (std::size_t i = 0; i < query.us.size(); ++i) {
     us.push_back(cli::percentile(query.us[i], 0.5));
     results += static_cast<double>(query.answers[i].results);
     const double true_m = truth.answers[i].distance_m;
     const double off_m = std::abs(query.answers[i].distance_m - true_m);
-    if (true_m > 0 && true_m < delta_m && !std::isnan(off_m)) worst_m = std::max(worst_m, off_m);
+    if (true_m > 0 && true_m < delta_m && !std::isnan(off_m)) worst_m = std::fmax(worst_m, off_m);
   }
-  std::printf("%s,%s,%.1f,%.1f,%.1f,%.1f,%.3g\n", query.name.c_str(), query.returns.c_str(),
+  std::printf("%s,%s,%.1f,%.1f,%.1f,%.1f,", query.name.c_str(), query.returns.c_str(),
               cli::percentile(us, 0.5), cli::percentile(us, 0.99), cli::percentile(us, 1.0),
-              results / static_cast<double>(us.size()), worst_m);
+              results / static_cast<double>(us.size()));
+  if (!std::isnan(worst_m)) std::printf("%.3g", worst_m);
+  std::puts("");
 }
 
 bake::Mesh mesh_of(const char* file) { return bake::read_mesh(file).mesh; }
