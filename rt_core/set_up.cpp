@@ -57,7 +57,7 @@ struct Layout {
   std::span<std::uint32_t> first_state, queue;
   std::span<regions::RegionState> regions;
   std::span<regions::Active> active;
-  std::span<regions::Swept> swept;
+  std::span<float> swept;
   std::span<regions::SearchScratch> search;
   std::span<regions::CrossingScratch> crossing;
 };
@@ -89,7 +89,7 @@ void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
   out.regions = arena.array<regions::RegionState>(all);
   out.active = arena.array<regions::Active>(all);
   out.queue = arena.array<std::uint32_t>(all);
-  out.swept = arena.array<regions::Swept>(most);
+  out.swept = arena.array<float>(most);
   out.search = arena.array<regions::SearchScratch>(1);
   out.crossing = arena.array<regions::CrossingScratch>(1);
 }

@@ -19,12 +19,11 @@ inline constexpr double kMotionSlack = 1e-9;
 /// has moved (moved_since()).
 struct RegionState {
   float rest = 0;
-  float lower = 0;                    ///< the least of `rest` and of the distances of `near`
-  Vec3d centre{};                     ///< in the coordinates of b
-  double travel_at = 0;               ///< PairState::travel
-  double turn_at = 0;                 ///< PairState::turn
-  Witness witness;                    ///< its distance is of the last tick it was measured in
-  std::uint32_t seed = image::kNone;  ///< where to look for a witness: a child of b's tree
+  float lower = 0;       ///< the least of `rest` and of the distances of `near`
+  Vec3d centre{};        ///< in the coordinates of b
+  double travel_at = 0;  ///< PairState::travel
+  double turn_at = 0;    ///< PairState::turn
+  Witness witness;       ///< its distance is of the last tick it was measured in
   NearPairs near;
 };
 

@@ -21,8 +21,15 @@ constexpr double kLeastRest = 0.01;
 /// A move by more than this (in units), or by this many delta where that is more, starts anew.
 constexpr double kJump = 0.05;
 constexpr double kJumpDelta = 2;
-/// Under a budget an interval is closed to this share of its width at a time.
+/// Under a budget an interval is closed to this share of its width at a time, and for good once it
+/// is narrower than a share of delta.
 constexpr float kStep = 0.3f;
+constexpr float kLastStep = 0.1f;
+/// Where an interval may stay open, a search leaves this share of that to motion, unless it is
+/// fast.
+constexpr float kRestShare = 0.75f;
+/// Neighbours of a witness farther than this many delta are not looked at.
+constexpr float kClimbReach = 2;
 /// Below this an interval is closed: rounding leaves as much.
 constexpr float kClosed = 2 * kRounding;
 /// More than any distance.
@@ -57,10 +64,14 @@ class Query {
   }
 
  private:
+  /// Of equal widths, as after a jump, neighbours are far apart in the order, so that a budget
+  /// which ends early has seen something of everywhere.
   struct Wider {
     std::span<const Active> active;
+    static std::uint32_t scattered(std::uint32_t i) noexcept { return i * 0x9e3779b1u; }
     bool operator()(std::uint32_t a, std::uint32_t b) const noexcept {
-      return active[a].width > active[b].width || (active[a].width == active[b].width && a < b);
+      return active[a].width > active[b].width ||
+             (active[a].width == active[b].width && scattered(a) < scattered(b));
     }
   };
 
@@ -76,14 +87,13 @@ class Query {
     if (!pair.fresh && last_motion(pair) <= far) return;
     pair.fresh = false;
     memory_.containment[index].doubtful = true;
-    const std::span<Swept> swept = memory_.swept.first(pair.image_a->regions.size());
+    const std::span<float> swept = memory_.swept.first(pair.image_a->regions.size());
     sweep(*memory_.kernels, memory_.frames[index], *memory_.search, pace_,
           static_cast<float>(pair.delta + margin_of(pair)), swept);
     for (std::uint32_t i = 0; i < swept.size(); ++i) {
       RegionState& state = memory_.states[memory_.first_state[index] + i];
-      state.seed = swept[i].seed;
       state.near.count = 0;
-      prove(state, pair, i, sqrt_of(swept[i].squared) - kRounding);
+      prove(state, pair, i, sqrt_of(swept[i]) - kRounding);
     }
   }
 
@@ -297,38 +307,26 @@ class Query {
   }
 
   /// One step. Under a budget that may end any moment, the cheap ones first: a witness is sought,
-  /// then moved to a nearer one, then the region is searched.
+  /// then moved to a nearer one, then the region is searched, by and by.
   void narrow(Active& item, float share) noexcept {
     if (!demand_.limited) {
       close(item, share);
       return;
     }
-    RegionState& state = state_of(item);
-    const Witness& witness = state.witness;
+    const Witness& witness = state_of(item).witness;
     const auto delta = static_cast<float>(pair_of(item).delta);
-    if ((state.seed != image::kNone || !witness.known()) && item.rest <= 0) {
-      dive_and_climb(item);
-    } else if (!item.climbed && witness.known() && witness.distance < 2 * delta) {
-      climb(*memory_.kernels, frame_of_item(item), *memory_.search, pace_, state.witness);
-      end_climb(item);
-    } else {
-      const float step = kStep * item.width;
-      close(item, step > share ? step : share);
+    if (witness.known() && !item.climbed && witness.distance < kClimbReach * delta) {
+      climb_from_witness(item);
+      return;
     }
+    const bool first = !witness.known();
+    const float step = item.width > kLastStep * delta ? kStep * item.width : 0;
+    close(item, step > share ? step : share, first);
+    if (first && witness.known() && !truncated_) climb_from_witness(item);
   }
 
-  void dive_and_climb(Active& item) noexcept {
-    RegionState& state = state_of(item);
-    const PairFrame& frame = frame_of_item(item);
-    Witness found = dive(*memory_.kernels, frame, *memory_.search, pace_, item.region, state.seed);
-    state.seed = image::kNone;
-    if (found.known()) climb(*memory_.kernels, frame, *memory_.search, pace_, found);
-    const Witness& old = state.witness;
-    if (found.known() && !(old.known() && old.distance < found.distance)) state.witness = found;
-    end_climb(item);
-  }
-
-  void end_climb(Active& item) noexcept {
+  void climb_from_witness(Active& item) noexcept {
+    climb(*memory_.kernels, frame_of_item(item), *memory_.search, pace_, state_of(item).witness);
     item.climbed = true;
     truncated_ |= !pace_.go_on();
     widen(item);
@@ -339,7 +337,8 @@ class Query {
   }
 
   /// Searches a region until its interval is at most tolerance wide.
-  void close(Active& item, float tolerance) noexcept {
+  /// @param first  or until a pair nearer than delta is known
+  void close(Active& item, float tolerance, bool first = false) noexcept {
     if (item.width <= kClosed && item.width <= tolerance) return;
     if (!pace_.go_on()) {
       truncated_ = true;
@@ -347,14 +346,12 @@ class Query {
     }
     const PairState& pair = pair_of(item);
     RegionState& state = state_of(item);
-    // The search's bound gives away kRounding, which is part of the interval.
-    const float room = tolerance > kRounding ? tolerance - kRounding : 0;
-    const Reach reach{static_cast<float>(pair.delta) + kClosed,
-                      static_cast<float>(margin_of(pair)) - room};
+    const Reach reach{static_cast<float>(pair.delta) + kClosed, margin_within(item, tolerance),
+                      first};
     const Bounds found = search(*memory_.kernels, frame_of_item(item), *memory_.search, pace_,
                                 item.region, state.witness, reach);
     state.witness = found.best;
-    truncated_ |= !found.complete;
+    truncated_ |= !found.complete && !pace_.go_on();
     if (found.rest > item.rest) {
       item.rest = found.rest;
       item.moved = 0;
@@ -362,6 +359,17 @@ class Query {
       prove(state, pair, item.region, found.rest);
     }
     widen(item);
+  }
+
+  /// Reach::margin of a search whose interval may stay open by the tolerance.
+  float margin_within(const Active& item, float tolerance) noexcept {
+    // The search's bound gives away kRounding, which is part of the interval.
+    const float room = tolerance > kRounding ? tolerance - kRounding : 0;
+    auto margin = static_cast<float>(margin_of(pair_of(item)));
+    const bool slow = margin > 0;
+    const bool anew = item.rest <= 0;  // a first answer soon
+    if (slow && !anew && !demand_.limited && margin < kRestShare * room) margin = kRestShare * room;
+    return margin - room;
   }
 
   void certify() noexcept {

@@ -43,7 +43,7 @@ struct QueryMemory {
   std::span<RegionState> states;         ///< [sum over pairs of the regions of a]
   std::span<Active> active;              ///< [states]
   std::span<std::uint32_t> queue;        ///< [states]
-  std::span<Swept> swept;                ///< [most regions of one body]
+  std::span<float> swept;                ///< [most regions of one body]
   std::span<Contact> contacts;           ///< [limits.contacts]
   SearchScratch* search = nullptr;
   CrossingScratch* crossing = nullptr;

@@ -55,31 +55,27 @@ class Search {
     static_cast<void>(finish());
   }
 
-  /// Keeps the nearest child only, from a pair on: finds a witness, and no bound.
-  Witness dive(const image::Region& region, std::uint32_t seed) noexcept {
-    greedy_ = true;
-    const std::uint32_t top = child_name(region.parent, region.slot);
-    if (seed == image::kNone) {
-      visit_root(top);
-    } else {
-      push({top, seed, 0});
-    }
-    return finish().best;
-  }
-
  private:
   Bounds finish() noexcept {
     while (size_ > 0 || pending_ > 0) {
-      if (!pace_.go_on()) return interrupted();
+      if (!pace_.go_on() || has_first()) return interrupted();
       if (size_ == 0) {
         flush();
         continue;
       }
       const Candidate top = scratch_.stack[--size_];
-      if (top.squared < threshold_squared_) descend(top);
+      if (top.squared < threshold_squared_) {
+        descend(top);
+      } else {
+        note_passed_over(top.squared);
+      }
     }
     out_.rest = proved(passed_over());
     return out_;
+  }
+
+  bool has_first() const noexcept {
+    return reach_.first && out_.best.known() && out_.best.distance < reach_.limit;
   }
 
   /// The root of b against a region: the one pair whose second box is not stored.
@@ -115,20 +111,22 @@ class Search {
   std::uint32_t expand(const Box& box, const Transform& to_node, const RegionNode& node,
                        float scale2) noexcept {
     pace_.charge(1);
+    centre_ = centre_in(box, to_node);
     const std::uint32_t children = children_of(node);
     const std::uint32_t near =
         children & kernels_.test_boxes(box, to_node, node, threshold_squared_ / scale2, squared_);
-    if (best_squared_ >= threshold_squared_) note_passed_over(children & ~near, scale2);
+    if (best_squared_ >= threshold_squared_) {
+      for (std::uint32_t far = children & ~near; far != 0; far &= far - 1) {
+        note_passed_over(squared_[__builtin_ctz(far)] * scale2);
+      }
+    }
     return near;
   }
 
   /// Only while nothing within the limit is known does it matter how far what is passed over is:
   /// a region that is far rests for as long.
-  void note_passed_over(std::uint32_t children, float scale2) noexcept {
-    for (; children != 0; children &= children - 1) {
-      const float squared = squared_[__builtin_ctz(children)] * scale2;
-      passed_squared_ = squared < passed_squared_ ? squared : passed_squared_;
-    }
+  void note_passed_over(float squared) noexcept {
+    passed_squared_ = squared < passed_squared_ ? squared : passed_squared_;
   }
 
   void keep_children_of_a(std::uint32_t node, std::uint32_t b, bool b_is_triangle,
@@ -142,7 +140,7 @@ class Search {
       if (pairs) {
         add_pair(parent.first + slot, triangle_of(*frame_.b, b), squared);
       } else {
-        push({child_name(node, slot), b, squared});
+        push({child_name(node, slot), b, squared, centres(parent, slot, squared)});
       }
     }
     nearest_to_top(bottom);
@@ -159,26 +157,51 @@ class Search {
       if (pairs) {
         add_pair(triangle_of(*frame_.a, a), parent.first + slot, squared);
       } else {
-        push({a, child_name(node, slot), squared});
+        push({a, child_name(node, slot), squared, centres(parent, slot, squared)});
       }
     }
     nearest_to_top(bottom);
   }
 
-  /// Of the candidates from `bottom` on. The order of the others does not matter: once something
-  /// near has been found, all that are left have to be looked at.
+  struct Centre {
+    float x, y, z;
+  };
+
+  static Centre centre_in(const Box& box, const Transform& map) noexcept {
+    const float* r = map.rotation;
+    const float* t = map.translation;
+    const float x = box.x[3];
+    const float y = box.y[3];
+    const float z = box.z[3];
+    return {map.scale * (r[0] * x + r[1] * y + r[2] * z) + t[0],
+            map.scale * (r[3] * x + r[4] * y + r[5] * z) + t[1],
+            map.scale * (r[6] * x + r[7] * y + r[8] * z) + t[2]};
+  }
+
+  /// Of the box looked at last and a child; asked for where the boxes overlap only.
+  float centres(const RegionNode& node, std::uint32_t slot, float squared) const noexcept {
+    if (squared > 0) return 0;
+    const float x = node.centre[0][slot] - centre_.x;
+    const float y = node.centre[1][slot] - centre_.y;
+    const float z = node.centre[2][slot] - centre_.z;
+    return x * x + y * y + z * z;
+  }
+
+  static bool goes_first(const Candidate& p, const Candidate& q) noexcept {
+    return p.squared < q.squared || (p.squared == q.squared && p.centres < q.centres);
+  }
+
+  /// Sorts the candidates from `bottom` on, at most a node's children. Half the work until the
+  /// nearest pair is met, against the nearest child on top and the others in any order.
   void nearest_to_top(std::uint32_t bottom) noexcept {
-    if (size_ <= bottom + 1) return;
-    std::uint32_t nearest = bottom;
     for (std::uint32_t i = bottom + 1; i < size_; ++i) {
-      nearest = scratch_.stack[i].squared < scratch_.stack[nearest].squared ? i : nearest;
+      const Candidate next = scratch_.stack[i];
+      std::uint32_t hole = i;
+      for (; hole > bottom && goes_first(scratch_.stack[hole - 1], next); --hole) {
+        scratch_.stack[hole] = scratch_.stack[hole - 1];
+      }
+      scratch_.stack[hole] = next;
     }
-    const Candidate top = scratch_.stack[nearest];
-    scratch_.stack[nearest] = scratch_.stack[size_ - 1];
-    scratch_.stack[size_ - 1] = top;
-    if (!greedy_) return;
-    scratch_.stack[bottom] = top;
-    size_ = bottom + 1;
   }
 
   static std::uint32_t triangle_of(const ImageView& image, std::uint32_t name) noexcept {
@@ -287,9 +310,9 @@ class Search {
   float threshold_squared_ = 0;
   float passed_squared_ = kFar;
   float squared_[kBatch];  // of the children looked at last, in their image's unit
+  Centre centre_{};        // of the single box, beside them
   std::uint32_t size_ = 0;
   std::uint32_t pending_ = 0;
-  bool greedy_ = false;
   CrossingList* crossings_ = nullptr;
 };
 
@@ -369,12 +392,6 @@ void note_crossing(const PairFrame& frame, std::uint32_t triangle_a, std::uint32
 void find_crossings(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
                     Pace& pace, std::uint32_t region, CrossingList& list) noexcept {
   Search(kernels, frame, scratch, pace, {}, {kRounding, 0}).collect(frame.a->regions[region], list);
-}
-
-Witness dive(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-             std::uint32_t region, std::uint32_t seed) noexcept {
-  return Search(kernels, frame, scratch, pace, {}, {kFarthest, 0})
-      .dive(frame.a->regions[region], seed);
 }
 
 }  // namespace palpate::regions

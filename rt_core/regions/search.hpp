@@ -20,7 +20,7 @@ inline constexpr std::uint64_t kUnitsPerReading = 32;
 struct Bounds {
   Witness best;
   float rest = 0;        ///< proved for all pairs but those kept, rounding subtracted; >= 0
-  bool complete = true;  ///< false: the budget ended the search
+  bool complete = true;  ///< false: the search was ended before it had seen everything
 };
 
 /// Two children (pair_frame.hpp) that may hold something nearer.
@@ -28,6 +28,7 @@ struct Candidate {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   float squared = 0;  ///< bound, in units
+  float centres = 0;  ///< squared distance of the centres where the bound is 0: which goes first
 };
 
 /// Depth first: each of two trees is descended at most kMaxRegionDepth times, each time leaving at
@@ -87,6 +88,7 @@ struct Reach {
   float limit = 0;  ///< distances from here on are of no interest
   float margin =
       0;  ///< pairs farther than the nearest by less are kept; < 0: so much may be missed
+  bool first = false;  ///< end as soon as any pair nearer than limit is known
 };
 
 /// Depth-first search of both trees, nearest child first: what is not nearer than
@@ -97,7 +99,7 @@ struct Reach {
 /// @param witness  the best known; its distance at the present poses
 /// Every pair of the region is kept, or at least `rest` apart. Complete: rest >= min(best, limit)
 /// + margin - kRounding, or the kept pairs are all that there is room for, and rest is no less than
-/// their distances, less kRounding. Interrupted: rest and best still hold.
+/// their distances, less kRounding. Ended before: rest and best still hold.
 /// Cost: the budget, or all pairs of boxes nearer than the answer. No allocation, no recursion.
 Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
               std::uint32_t region, const Witness& witness, const Reach& reach) noexcept;
@@ -116,11 +118,5 @@ void note_crossing(const PairFrame& frame, std::uint32_t triangle_a, std::uint32
 /// is used up. Boxes of crossing triangles overlap, so that none is passed over.
 void find_crossings(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
                     Pace& pace, std::uint32_t region, CrossingList& list) noexcept;
-
-/// A witness of a region by going to the nearest child of both trees, one path only.
-/// @param seed  a child of b to start from; kNone: the root
-/// Unknown where the budget ended it. Cost: kMaxRegionDepth boxes of each tree and two batches.
-Witness dive(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-             std::uint32_t region, std::uint32_t seed) noexcept;
 
 }  // namespace palpate::regions

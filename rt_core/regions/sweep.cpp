@@ -18,16 +18,16 @@ constexpr float kCoarse2 = 4;
 class Sweep {
  public:
   Sweep(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-        float limit, std::span<Swept> out) noexcept
+        float limit, std::span<float> out_squared) noexcept
       : kernels_(kernels),
         frame_(frame),
         scratch_(scratch),
         pace_(pace),
         limit_squared_(limit * limit),
-        out_(out) {}
+        out_squared_(out_squared) {}
 
   void run() noexcept {
-    for (Swept& s : out_) s = {std::numeric_limits<float>::max(), image::kNone};
+    for (float& squared : out_squared_) squared = std::numeric_limits<float>::max();
     const RegionNode& root = frame_.a->region_nodes[0];
     for (std::uint32_t slot = 0; slot < root.children; ++slot) split_b(child_name(0, slot), 0);
     while (size_ > 0) {
@@ -35,7 +35,7 @@ class Sweep {
       if (pace_.go_on()) {
         descend(top);
       } else {
-        note(top);
+        cover(top.a, top.squared);
       }
     }
   }
@@ -55,7 +55,7 @@ class Sweep {
     if (!whole_b) {
       split_b(pair.a, over_b.first + slot_of(pair.b));
     } else if (node_below_a(pair.a).region != image::kNone) {
-      note(pair);
+      cover(pair.a, pair.squared);
     } else {
       split_a(over_a.first + slot_of(pair.a), pair.b);
     }
@@ -110,16 +110,8 @@ class Sweep {
   /// A part of b that is `squared` or more from everything below a child of a.
   void cover(std::uint32_t a, float squared) noexcept {
     const RegionNode& below = node_below_a(a);
-    for (Swept& s : out_.subspan(below.first_region, below.regions)) {
-      s.squared = squared < s.squared ? squared : s.squared;
-    }
-  }
-
-  void note(const Candidate& pair) noexcept {
-    const RegionNode& below = node_below_a(pair.a);
-    for (Swept& s : out_.subspan(below.first_region, below.regions)) {
-      if (pair.squared < s.squared || s.seed == image::kNone) s.seed = pair.b;
-      s.squared = pair.squared < s.squared ? pair.squared : s.squared;
+    for (float& least : out_squared_.subspan(below.first_region, below.regions)) {
+      least = squared < least ? squared : least;
     }
   }
 
@@ -128,15 +120,15 @@ class Sweep {
   SearchScratch& scratch_;
   Pace& pace_;
   float limit_squared_;
-  std::span<Swept> out_;
+  std::span<float> out_squared_;
   std::uint32_t size_ = 0;
 };
 
 }  // namespace
 
 void sweep(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-           float limit, std::span<Swept> out) noexcept {
-  Sweep(kernels, frame, scratch, pace, limit, out).run();
+           float limit, std::span<float> out_squared) noexcept {
+  Sweep(kernels, frame, scratch, pace, limit, out_squared).run();
 }
 
 }  // namespace palpate::regions

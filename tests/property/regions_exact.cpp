@@ -142,7 +142,7 @@ TEST(RegionSearch, bounds_hold_wherever_the_budget_ends_it) {
   const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
   for (std::uint32_t region = 0; region < truth.size(); region += 3) {
     const double d = truth[region];
-    for (const float margin : {0.0f, -0.01f, 0.01f}) {
+    for (const float margin : {0.0f, -0.01f, 0.01f, -0.1f, -0.3f}) {
       for (const std::uint64_t units : {0u, 1u, 3u, 9u, 20u, 50u, 100000u}) {
         Meter meter({.units = units}, 0);
         regions::Pace pace(meter);
@@ -152,7 +152,7 @@ TEST(RegionSearch, bounds_hold_wherever_the_budget_ends_it) {
         if (found.best.known()) {
           ASSERT_GE(double(found.best.distance), d - kRounding);
         }
-        if (!found.complete || d > 0.5) continue;
+        if (!found.complete || d > 0.5 + std::min(0.0, double(margin))) continue;
         ASSERT_TRUE(found.best.known());
         ASSERT_GE(double(found.rest),
                   d + std::min(0.0, double(margin)) - 2 * double(regions::kRounding))
@@ -226,19 +226,16 @@ TEST(RegionState, no_point_moves_farther_than_is_said) {
 TEST(RegionSweep, bounds_all_regions_from_below_wherever_the_budget_ends_it) {
   SearchedPair at(kNear);
   const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
-  std::vector<regions::Swept> swept(truth.size());
+  std::vector<float> swept(truth.size());
   for (const std::uint64_t units : {0u, 5u, 50u, 100000u}) {
     Meter meter({.units = units}, 0);
     regions::Pace pace(meter);
     regions::sweep(regions::best_kernels(), at.frame, *at.scratch, pace, 0.1f, swept);
     int told_apart = 0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
-      const double lower = std::sqrt(double(swept[i].squared));
+      const double lower = std::sqrt(double(swept[i]));
       ASSERT_LE(lower - double(regions::kRounding), truth[i]);
       told_apart += lower >= 0.1 ? 1 : 0;
-      if (lower < 0.1) {
-        ASSERT_NE(swept[i].seed, image::kNone);
-      }
     }
     if (units == 100000) {
       EXPECT_GT(told_apart, int(truth.size()) / 2);
@@ -246,19 +243,22 @@ TEST(RegionSweep, bounds_all_regions_from_below_wherever_the_budget_ends_it) {
   }
 }
 
-TEST(RegionSearch, dive_and_climb_find_a_pair_of_the_region) {
+TEST(RegionSearch, first_pair_and_climb_are_of_the_region_and_its_bound_holds) {
   SearchedPair at(kNear);
   const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
   Meter meter({}, 0);
   regions::Pace pace(meter);
-  std::vector<regions::Swept> swept(truth.size());
-  regions::sweep(regions::best_kernels(), at.frame, *at.scratch, pace, 0.1f, swept);
+  constexpr float kReach = 0.1f;
   int near = 0;
   for (std::uint32_t i = 0; i < truth.size(); ++i) {
-    if (swept[i].seed == image::kNone) continue;
-    regions::Witness w =
-        regions::dive(regions::best_kernels(), at.frame, *at.scratch, pace, i, swept[i].seed);
-    ASSERT_TRUE(w.known());
+    const regions::Bounds found = regions::search(regions::best_kernels(), at.frame, *at.scratch,
+                                                  pace, i, {}, {kReach, -0.5f * kReach, true});
+    ASSERT_LE(double(found.rest), truth[i]);
+    if (truth[i] < 0.5 * double(kReach)) {
+      ASSERT_TRUE(found.best.known());
+    }
+    if (!found.best.known()) continue;
+    regions::Witness w = found.best;
     const float before = w.distance;
     regions::climb(regions::best_kernels(), at.frame, *at.scratch, pace, w);
     EXPECT_LE(w.distance, before);

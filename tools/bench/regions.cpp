@@ -3,15 +3,17 @@
 //
 //   bench_regions [TICKS [SCENE[:DELTA]...]]     scenes: jaws, tips, golf, socket, screw, joint;
 //                                                default: all, with 0.01, 0.02 and 0.05
+//   bench_regions TICKS growth                   jaws with more and more triangles at one motion
 //
 // A row (CSV) for each scene, contact tolerance (relative to the radius) and mode: exact with all
-// state kept (warm) or forgotten at each tick (cold), and under budgets of time. Times are of the
-// thread's own processor clock, so that a busy machine shows in the caches only; units are those of
-// the engine (TickResult::queries). force_nrmse is against the exact ticks, of their largest force,
-// over all ticks but the first ten; bound_of_force is the median of the certified error over that
-// force; force_step is the largest change of force from tick to tick. Where FCL is installed, its
-// distance of the same meshes (one least distance, OBBRSS) is asked between the exact ticks, pose
-// by pose; of_fcl is our time by its time, summed over the run.
+// state kept (warm) or forgotten at each tick (cold), with a tolerance of force, and under budgets
+// of time or of work units. Times are of the thread's own processor clock, so that a busy machine
+// shows in the caches only; units are those of the engine (TickResult::queries), counted and not
+// timed; settled_units are of the second half of the ticks. force_nrmse is against the exact ticks,
+// of their largest force, over all ticks but the first ten; bound_of_force is the median of the
+// certified error over that force; force_step is the largest change of force from tick to tick.
+// Where FCL is installed, its distance of the same meshes (one least distance, OBBRSS) is asked
+// between the exact ticks, pose by pose; of_fcl is our time by its time, summed over the run.
 #include <time.h>
 
 #include <algorithm>
@@ -97,8 +99,16 @@ double peer_us(const Peer&, const Pose&) { return 0; }
 struct Plan {
   bool cold = false;
   double budget_us = 0;
+  std::uint64_t budget_units = 0;
+  double tolerance_N = 0;
   const Peer* peer = nullptr;
 };
+
+Budget budget_of(const Plan& plan) {
+  Budget budget = within(plan.budget_us);
+  if (plan.budget_units > 0) budget.units = plan.budget_units;
+  return budget;
+}
 
 Run run(Bench& bench, const std::vector<Pose>& poses, const Plan& plan) {
   Run out;
@@ -106,7 +116,7 @@ Run run(Bench& bench, const std::vector<Pose>& poses, const Plan& plan) {
   for (const Pose& pose : poses) {
     if (plan.cold) bench.forget();
     const std::uint64_t start = processor_ns();
-    const TickResult r = bench.tick_at(pose, within(plan.budget_us));
+    const TickResult r = bench.tick_at(pose, budget_of(plan));
     out.us.push_back(static_cast<double>(processor_ns() - start) * 1e-3);
     out.contacts.push_back(static_cast<double>(r.contacts.size()));
     out.near.push_back(static_cast<double>(r.front_nodes));
@@ -128,9 +138,12 @@ void print_row(const char* scene, double delta_rel, const Plan& plan, const Run&
     peak = std::max(peak, norm(exact.force_N[i]));
     if (i > 0) step = std::max(step, norm(exact.force_N[i] - exact.force_N[i - 1]));
   }
-  std::printf("%s,%g,%s,%g,%.1f,%.1f,%.1f,%.0f,%.1f,%.1f,%.4f,%.4f,%.4f", scene, delta_rel,
-              plan.cold ? "cold" : "warm", plan.budget_us, mean(r.us), percentile(r.us, 0.5),
-              percentile(r.us, 0.99), mean(r.units), mean(r.near), mean(r.contacts),
+  const std::vector<double> settled(r.units.begin() + std::ptrdiff_t(r.units.size() / 2),
+                                    r.units.end());
+  std::printf("%s,%g,%s,%g,%g,%g,%.1f,%.1f,%.1f,%.0f,%.0f,%.1f,%.1f,%.4f,%.4f,%.4f", scene,
+              delta_rel, plan.cold ? "cold" : "warm", plan.budget_us, double(plan.budget_units),
+              plan.tolerance_N, mean(r.us), percentile(r.us, 0.5), percentile(r.us, 0.99),
+              mean(r.units), mean(settled), mean(r.near), mean(r.contacts),
               nrmse(r.force_N, exact.force_N, kSettled), percentile(r.bound_N, 0.5) / peak,
               step / peak);
   if (r.fcl_us > 0) {
@@ -155,8 +168,43 @@ void measure(const SceneName& scene, double delta_rel, int ticks) {
     plans.push_back({.budget_us = budget_us});
     plans.push_back({.cold = true, .budget_us = budget_us});
   }
+  for (const std::uint64_t units : {1000u, 2500u, 5000u, 10000u}) {
+    plans.push_back({.budget_units = units});
+    plans.push_back({.cold = true, .budget_units = units});
+  }
   for (const Plan& plan : plans) {
     print_row(scene.name, delta_rel, plan, run(bench, poses, plan), exact);
+  }
+}
+
+/// Interlocking jaws at the poses of the default ones, the same contact however fine they are.
+void measure_growth(int ticks) {
+  constexpr double kDeltaRel = 0.02;
+  constexpr double kTolerance_N = 3;
+  const SceneName& jaws = kScenes[0];
+  std::vector<Pose> poses;
+  double delta = 0;
+  for (const std::size_t triangles : {0u, 160'000u, 640'000u}) {
+    const Body a(jaws.a, kDeltaRel, bake::ForEngine::regions, triangles);
+    const Body b(jaws.b, kDeltaRel, bake::ForEngine::regions, triangles);
+    if (poses.empty()) {
+      delta = kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
+      poses = motion(jaws, a, b, delta, ticks);
+    }
+    Bench exact_bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
+    Bench loose_bench(
+        a, b, {.engine = EngineKind::regions, .delta_m = delta, .force_tolerance_N = kTolerance_N});
+    const std::string name =
+        "jaws_" + std::to_string(a.view.region_triangles.size() + b.view.region_triangles.size());
+    const Run exact = run(exact_bench, poses, {});
+    print_row(name.c_str(), kDeltaRel, {}, exact, exact);
+    for (const Plan& plan : {Plan{.cold = true}, Plan{.budget_units = 2500}}) {
+      print_row(name.c_str(), kDeltaRel, plan, run(exact_bench, poses, plan), exact);
+    }
+    for (const bool cold : {false, true}) {
+      const Plan plan{.cold = cold, .tolerance_N = kTolerance_N};
+      print_row(name.c_str(), kDeltaRel, plan, run(loose_bench, poses, plan), exact);
+    }
   }
 }
 
@@ -184,8 +232,12 @@ int main(int argc, char** argv) {
   using namespace palpate::bench;
   const int ticks = argc > 1 ? std::max(20, std::atoi(argv[1])) : 300;
   std::printf(
-      "scene,delta_rel,mode,budget_us,mean_us,median_us,p99_us,units,near_regions,contacts,"
-      "force_nrmse,bound_of_force,force_step,fcl_us,of_fcl\n");
+      "scene,delta_rel,mode,budget_us,budget_units,tolerance_N,mean_us,median_us,p99_us,units,"
+      "settled_units,near_regions,contacts,force_nrmse,bound_of_force,force_step,fcl_us,of_fcl\n");
+  if (argc == 3 && std::strcmp(argv[2], "growth") == 0) {
+    measure_growth(ticks);
+    return 0;
+  }
   for (const SceneName& scene : kScenes) {
     if (argc <= 2) measure_asked(scene, 0, ticks);
     for (int i = 2; i < argc; ++i) {

@@ -82,8 +82,8 @@ Pose pressed(Bench& wide, const Body& a, double delta, int i) {
 
 }  // namespace
 
-Body::Body(const char* model, double delta_rel, bake::ForEngine engine) {
-  const bake::Mesh mesh = bake::make_model(model);
+Body::Body(const char* model, double delta_rel, bake::ForEngine engine, std::size_t triangles) {
+  const bake::Mesh mesh = bake::make_model(model, triangles);
   bake::BakeOptions options;
   options.engine = engine;
   options.delta_rel = delta_rel;

@@ -24,7 +24,8 @@ struct SceneName {
 
 /// A model, baked in memory.
 struct Body {
-  Body(const char* model, double delta_rel, bake::ForEngine engine);
+  /// @param triangles  0: the model's default
+  Body(const char* model, double delta_rel, bake::ForEngine engine, std::size_t triangles = 0);
   std::unique_ptr<bake::AlignedCopy> image;
   ImageView view;
 };
