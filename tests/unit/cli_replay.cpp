@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `palpate replay` as a process: two cubes of a centimetre, the tool coming down on a fixed one
-// along x.
+// `palpate replay` as a process.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "../support/cube_scene.hpp"
 #include "../support/process.hpp"
 #include "../support/temporary_folder.hpp"
-#include "../support/tiny_image.hpp"
 
 namespace palpate {
 namespace {
@@ -42,31 +40,14 @@ double number(const std::string& text) { return std::strtod(text.c_str(), nullpt
 class Replay : public ::testing::Test {
  protected:
   Replay() {
-    // Two halves a cube: a tree with something to refine.
-    const std::vector<test::Part> halves = {test::box_part({0, 0, -0.25f}, {0.5f, 0.5f, 0.25f}),
-                                            test::box_part({0, 0, 0.25f}, {0.5f, 0.5f, 0.25f})};
-    const auto image = test::seal(test::parts_of(halves, 0.01));
-    std::string bytes(image.size(), '\0');
-    std::memcpy(bytes.data(), image.data(), image.size());
-    folder_.write("cube.palp", bytes);
-    write_scene("");
-    std::string poses = "t,body,px,py,pz,qw,qx,qy,qz\n";
-    for (int i = 0; i < kTicks; ++i) {
-      poses += "0.00" + std::to_string(i) + ",tool," + std::to_string(0.011 - 0.0002 * i) +
-               ",0,0,1,0,0,0\n";
-    }
-    folder_.write("poses.csv", poses);
+    folder_.write("cube.palp", test::cube_image());
+    folder_.write("scene.toml", test::cube_scene());
+    folder_.write("poses.csv", test::cube_poses(kTicks));
   }
 
   void write_scene(const std::string& engine, const std::string& rest = "",
                    const std::string& force = "") {
-    folder_.write("scene.toml",
-                  "[engine]\ndelta_m = 0.0005\n" + engine +
-                      "\n[force]\nstiffness_N_per_m = 600.0\n" + force +
-                      "[[body]]\nname = \"tool\"\n"
-                      "image = \"cube.palp\"\nrole = \"tool\"\n[[body]]\nname = \"wall\"\nimage = "
-                      "\"cube.palp\"\n" +
-                      rest);
+    folder_.write("scene.toml", test::cube_scene(engine, rest, force));
   }
 
   [[nodiscard]] std::string at(const std::string& name) const {

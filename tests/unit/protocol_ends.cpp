@@ -282,9 +282,14 @@ TEST(HostEnd, expired_or_infinite_commands_ask_for_no_force) {
   ASSERT_EQ(decode(host.command(command, 10 * kMs), out), PacketError::none);
   EXPECT_FALSE(out.enable);
   EXPECT_EQ(out.force_uN[0], 0);
-  command.wrench.torque_Nm.y = std::numeric_limits<double>::quiet_NaN();
-  ASSERT_EQ(decode(host.command(command, 4 * kMs), out), PacketError::none);
-  EXPECT_FALSE(out.enable);
+  for (double* component : {&command.wrench.force_N.z, &command.wrench.torque_Nm.y}) {
+    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+      *component = bad;
+      ASSERT_EQ(decode(host.command(command, 4 * kMs), out), PacketError::none);
+      EXPECT_FALSE(out.enable);
+    }
+    *component = 0;
+  }
   command.wrench.torque_Nm.y = 1e300;
   ASSERT_EQ(decode(host.command(command, 4 * kMs), out), PacketError::none);
   EXPECT_EQ(out.torque_uNm[1], std::numeric_limits<std::int32_t>::max());

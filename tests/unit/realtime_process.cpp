@@ -10,32 +10,17 @@
 #include <string>
 #include <vector>
 
+#include "../support/cube_scene.hpp"
 #include "../support/process.hpp"
 #include "../support/temporary_folder.hpp"
-#include "../support/tiny_image.hpp"
 
 namespace palpate {
 namespace {
 
 using nlohmann::json;
 
-constexpr const char* kScene = R"([engine]
-delta_m = 0.0005
-budget_us = 400.0
-[force]
-stiffness_N_per_m = 600.0
-max_force_N = 0.5
-max_torque_Nm = 0.1
-[[body]]
-name = "tool"
-image = "cube.palp"
-role = "tool"
-position = [0.0102, 0.0, 0.0]
-[[body]]
-name = "base"
-image = "cube.palp"
-role = "fixed"
-[[mock.path]]
+/// The hand presses the tool into the base and stays there.
+constexpr const char* kPress = R"([[mock.path]]
 t_s = 0.0
 position = [0.0102, 0.0, 0.0]
 [[mock.path]]
@@ -49,12 +34,8 @@ position = [0.0090, 0.0, 0.0]
 class Run : public ::testing::Test {
  protected:
   Run() {
-    const std::vector<test::Part> cube = {test::box_part({0, 0, 0}, {0.5f, 0.5f, 0.5f})};
-    const auto image = test::seal(test::parts_of(cube, 0.01));
-    std::string bytes(image.size(), '\0');
-    std::memcpy(bytes.data(), image.data(), image.size());
-    folder_.write("cube.palp", bytes);
-    folder_.write("scene.toml", kScene);
+    folder_.write("cube.palp", test::cube_image());
+    folder_.write("scene.toml", test::cube_loop_scene(kPress));
   }
 
   test::Outcome run(std::vector<std::string> options) const {
@@ -107,7 +88,7 @@ TEST_F(Run, pressing_hand_feels_a_force_within_the_scenes_limit) {
 
 TEST_F(Run, contacts_on_a_thread_of_their_own_with_friction_and_damping_are_felt) {
   for (const char* coupling : {"direct", "virtual"}) {
-    std::string scene = kScene;
+    std::string scene = test::cube_loop_scene(kPress);
     scene.replace(
         scene.find("max_force_N"), 0,
         "contact_damping_N_s_per_m = 0.2\ncoupling = \"" + std::string(coupling) + "\"\n");

@@ -4,7 +4,8 @@ if(PALPATE_HOST)
   find_package(nlohmann_json REQUIRED)
   set(palpate_cli "${PROJECT_SOURCE_DIR}/tools/palpate")
   set(report_sources report_contacts report_folder report_frames report_json report_page report_shapes report_sweep report_trace
-    report_view report_words words replay_csv replay_loop scene_engine scene_forces image_file level_mesh poses output_file command)
+    report_view report_words words sweep_figures replay_csv replay_loop scene_engine scene_forces image_file level_mesh poses
+    output_file command)
   list(TRANSFORM report_sources PREPEND "${palpate_cli}/")
   list(TRANSFORM report_sources APPEND .cpp)
   palpate_test(report_test

@@ -17,7 +17,7 @@ class Report : public ::testing::Test {
  protected:
   Report() {
     folder_.write("cube.palp", test::cube_image());
-    folder_.write("cubes.toml", test::kCubeScene);
+    folder_.write("cubes.toml", test::cube_scene());
     folder_.write("poses.csv", test::cube_poses(6));
     const test::Outcome outcome =
         test::run({PALPATE_EXECUTABLE, "replay", at("cubes.toml"), "--poses", at("poses.csv"), "-o",

@@ -18,7 +18,7 @@ class ReportContacts : public ::testing::Test {
  protected:
   ReportContacts() {
     folder_.write("cube.palp", test::cube_image());
-    view_.scene = config::load_scene(folder_.write("cubes.toml", test::kCubeScene));
+    view_.scene = config::load_scene(folder_.write("cubes.toml", test::cube_scene()));
     view_.track = read_poses(folder_.write("poses.csv", test::cube_poses(kTicks)), view_.scene);
     line_.ticks = test::some_ticks(kTicks);
   }

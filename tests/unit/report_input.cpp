@@ -16,7 +16,8 @@ namespace {
 class ReportFolder : public ::testing::Test {
  protected:
   ReportFolder() {
-    folder_.write("cubes.toml", test::kCubeScene);
+    folder_.write("cube.palp", test::cube_image());
+    folder_.write("cubes.toml", test::cube_scene());
     folder_.write("poses.csv", test::cube_poses(kTicks));
     folder_.write("fast.csv", ticks_csv(test::some_ticks(kTicks)));
   }
@@ -39,6 +40,7 @@ TEST_F(ReportFolder, files_are_told_apart_by_their_first_lines) {
   ASSERT_TRUE(input.view);
   EXPECT_EQ(input.view->contacts.filename(), "fast_contacts.csv");
   EXPECT_EQ(input.view->track.ticks.size(), std::size_t(kTicks));
+  EXPECT_FALSE(input.judged);
   EXPECT_TRUE(input.notes.empty());
 }
 
@@ -51,6 +53,9 @@ TEST_F(ReportFolder, exact_tables_come_first) {
   EXPECT_TRUE(input.lines[0].exact);
   EXPECT_EQ(input.lines[1].name, "fast");
   EXPECT_EQ(input.lines[2].name, "zero");
+  ASSERT_TRUE(input.judged);
+  EXPECT_EQ(input.judged->delta_m, 0.0005);
+  EXPECT_GT(input.judged->radius_m, 0.0);
 }
 
 TEST_F(ReportFolder, contacts_go_with_the_table_of_their_name) {
@@ -93,7 +98,7 @@ TEST_F(ReportFolder, nothing_to_report_is_refused) {
 }
 
 TEST_F(ReportFolder, unclear_scene_costs_the_view_and_leaves_a_note) {
-  folder_.write("second.toml", test::kCubeScene);
+  folder_.write("second.toml", test::cube_scene());
   ReportInput input = read();
   EXPECT_FALSE(input.view);
   ASSERT_EQ(input.notes.size(), 1u);
@@ -144,7 +149,7 @@ class ReportTrace : public ::testing::Test {
  protected:
   /// Ticks 0, 1 and 3 of a loop of 1 kHz, which dropped nothing.
   std::string trace() {
-    std::string scene = folder_.write("cubes.toml", test::kCubeScene).string();
+    std::string scene = folder_.write("cubes.toml", test::cube_scene()).string();
     realtime::TraceHeader header;
     header.record_bytes = sizeof(realtime::TraceRecord);
     header.scene_bytes = static_cast<std::uint32_t>(scene.size());

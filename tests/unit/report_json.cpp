@@ -133,7 +133,7 @@ class ReportView : public ::testing::Test {
  protected:
   ReportView() {
     folder_.write("cube.palp", test::cube_image());
-    view_.scene = config::load_scene(folder_.write("cubes.toml", test::kCubeScene));
+    view_.scene = config::load_scene(folder_.write("cubes.toml", test::cube_scene()));
     view_.track = read_poses(folder_.write("poses.csv", test::cube_poses(6)), view_.scene);
   }
   test::TemporaryFolder folder_;

@@ -15,6 +15,18 @@ std::string joined(const ReportInput& input) {
   return out;
 }
 
+/// Two lines that are the same but for their names.
+ReportInput exact_and_fast() {
+  ReportInput input;
+  input.lines.resize(2);
+  input.lines[0].name = "exact";
+  input.lines[0].exact = true;
+  input.lines[0].ticks = test::some_ticks(4);
+  input.lines[1].name = "fast";
+  input.lines[1].ticks = test::some_ticks(4);
+  return input;
+}
+
 void expect_said(const std::string& text, const std::string& words) {
   EXPECT_NE(text.find(words), std::string::npos) << words << "\nin\n" << text;
 }
@@ -53,13 +65,7 @@ TEST(ReportWords, sweep_says_what_no_setting_reaches_and_what_broke) {
 }
 
 TEST(ReportWords, replay_says_times_touch_and_certificate) {
-  ReportInput input;
-  input.lines.resize(2);
-  input.lines[0].name = "exact";
-  input.lines[0].exact = true;
-  input.lines[0].ticks = test::some_ticks(4);
-  input.lines[1].name = "fast";
-  input.lines[1].ticks = test::some_ticks(4);
+  ReportInput input = exact_and_fast();
   input.lines[1].ticks[3].contacts = 2;
   input.lines[1].ticks[3].certificate.truncated_by_time = true;
   for (TickRow& row : input.lines[1].ticks) row.min_distance_m += 1e-5;
@@ -71,6 +77,15 @@ TEST(ReportWords, replay_says_times_touch_and_certificate) {
   expect_said(text, "within 0.02 mm of the truth at the median");
   expect_said(text, "the true error against exact is 0.01 mm at the median");
   expect_said(text, "exact: a tick took");
+}
+
+TEST(ReportWords, replay_counts_broken_certificates_where_the_scene_is_known) {
+  ReportInput input = exact_and_fast();
+  EXPECT_EQ(joined(input).find("broken"), std::string::npos);
+  input.judged = {.delta_m = 5e-4, .radius_m = 0.01};
+  expect_said(joined(input), "It was never broken.");
+  input.lines[1].ticks[2].min_distance_m += 4e-5;  // the bound is 3e-5
+  expect_said(joined(input), "It was broken in 1 tick: the true distance lay outside the bound.");
 }
 
 TEST(ReportWords, run_says_what_was_missed_and_why_it_stopped) {

@@ -11,3 +11,7 @@ find_package(nlohmann_json REQUIRED)
 palpate_test(sweep_process_test SOURCES unit/sweep_command.cpp LIBS palpate_rt nlohmann_json::nlohmann_json)
 add_dependencies(sweep_process_test palpate)
 target_compile_definitions(sweep_process_test PRIVATE PALPATE_EXECUTABLE="$<TARGET_FILE:palpate>")
+
+palpate_test(motion_process_test SOURCES unit/motion_command.cpp LIBS palpate_rt)
+add_dependencies(motion_process_test palpate)
+target_compile_definitions(motion_process_test PRIVATE PALPATE_EXECUTABLE="$<TARGET_FILE:palpate>")

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `palpate sweep` and `palpate make-motion` as processes: two cubes of a centimetre, cut into
-// halves, the tool coming down on a fixed one along x. The images serve the levels engine only.
+// `palpate sweep` and `palpate make-motion` as processes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "../support/cube_scene.hpp"
 #include "../support/process.hpp"
 #include "../support/temporary_folder.hpp"
-#include "../support/tiny_image.hpp"
 
 namespace palpate {
 namespace {
@@ -20,26 +18,13 @@ namespace {
 class Sweep : public ::testing::Test {
  protected:
   Sweep() {
-    const std::vector<test::Part> halves = {test::box_part({0, 0, -0.25f}, {0.5f, 0.5f, 0.25f}),
-                                            test::box_part({0, 0, 0.25f}, {0.5f, 0.5f, 0.25f})};
-    const auto image = test::seal(test::parts_of(halves, 0.01));
-    std::string bytes(image.size(), '\0');
-    std::memcpy(bytes.data(), image.data(), image.size());
-    folder_.write("cube.palp", bytes);
-    folder_.write("scene.toml",
-                  "[engine]\ndelta_m = 0.0005\n[force]\nstiffness_N_per_m = 600.0\n[[body]]\n"
-                  "name = \"tool\"\nimage = \"cube.palp\"\nrole = \"tool\"\n[[body]]\n"
-                  "name = \"wall\"\nimage = \"cube.palp\"\n");
+    folder_.write("cube.palp", test::cube_image());
+    folder_.write("scene.toml", test::cube_scene());
     write_poses(0.0002);
   }
 
   void write_poses(double step_m) {
-    std::string poses = "t,body,px,py,pz,qw,qx,qy,qz\n";
-    for (int i = 0; i < kTicks; ++i) {
-      poses += "0.00" + std::to_string(i) + ",tool," + std::to_string(0.0108 - step_m * i) +
-               ",0,0,1,0,0,0\n";
-    }
-    folder_.write("poses.csv", poses);
+    folder_.write("poses.csv", test::cube_poses(kTicks, 0.0008, step_m));
   }
 
   [[nodiscard]] std::string at(const std::string& name) const {

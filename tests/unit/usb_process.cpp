@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "../support/cube_scene.hpp"
 #include "../support/process.hpp"
 #include "../support/temporary_folder.hpp"
 #include "../support/tiny_image.hpp"
@@ -232,30 +233,11 @@ TEST_F(UsbProcess, device_with_a_key_takes_signed_images_that_are_not_older) {
 }
 #endif
 
-constexpr const char* kScene = R"([engine]
-delta_m = 0.0005
-budget_us = 400.0
-[force]
-stiffness_N_per_m = 600.0
-max_force_N = 0.5
-[[body]]
-name = "tool"
-image = "cube.palp"
-role = "tool"
-position = [0.0102, 0.0, 0.0]
-[[body]]
-name = "base"
-image = "cube.palp"
-role = "fixed"
-)";
-
 // How late a tick is depends on the machine, so 0 and 5 are both right; at 50 Hz it may stand still
 // for 40 ms before the device gives the loop up.
 TEST_F(UsbProcess, run_refuses_a_device_with_an_image_of_another_scene) {
-  const auto cube =
-      test::seal(test::parts_of({test::box_part({0, 0, 0}, {0.5f, 0.5f, 0.5f})}, 0.01));
-  folder_.write("cube.palp", {reinterpret_cast<const char*>(cube.data()), cube.size()});
-  folder_.write("scene.toml", kScene);
+  folder_.write("cube.palp", test::cube_image());
+  folder_.write("scene.toml", test::cube_loop_scene());
   ASSERT_EQ(palpate({"flash", path("one.palp"), "--device", "usb"}).status, 0);
   const auto run = [&] {
     return palpate({"run", path("scene.toml"), "--device", "usb", "--seconds", "0.1", "--rate",
@@ -269,10 +251,8 @@ TEST_F(UsbProcess, run_refuses_a_device_with_an_image_of_another_scene) {
 }
 
 TEST_F(UsbProcess, run_feels_the_contact_through_the_device) {
-  const auto cube =
-      test::seal(test::parts_of({test::box_part({0, 0, 0}, {0.5f, 0.5f, 0.5f})}, 0.01));
-  folder_.write("cube.palp", {reinterpret_cast<const char*>(cube.data()), cube.size()});
-  folder_.write("scene.toml", kScene);
+  folder_.write("cube.palp", test::cube_image());
+  folder_.write("scene.toml", test::cube_loop_scene());
   const test::Outcome outcome = palpate({"run", path("scene.toml"), "--device", "usb", "--seconds",
                                          "4", "--rate", "50", "--json", "--quiet"});
   ASSERT_TRUE(outcome.status == 0 || outcome.status == 5) << outcome.out << outcome.err;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Palpate beside FCL: same meshes, same poses, same run.
+// Palpate beside FCL and, where it is installed, Bullet: same meshes, same poses, same run.
 //
 //   bench_peers SCENE.toml POSES.csv TOOL_MESH OTHER_MESH [TICKS]
 //
@@ -21,6 +21,9 @@
 #include <vector>
 
 #include "host_bake/mesh/read.hpp"
+#ifdef PALPATE_BENCH_BULLET
+#include "tools/bench/mesh_bullet.hpp"
+#endif
 #include "tools/bench/mesh_fcl.hpp"
 #include "tools/palpate/poses.hpp"
 #include "tools/palpate/scene_engine.hpp"
@@ -67,7 +70,7 @@ void run(Query& query, const cli::PoseTrack& track, std::vector<Pose> poses) {
 }
 
 /// A Palpate engine at one setting; the scene lives as long as the query does.
-Query palpate_query(const config::Scene& scene, const cli::SweepSetting& setting,
+Query palpate_query(const config::Scene& scene, const cli::SweepSetting& setting, const char* name,
                     const char* returns) {
   struct Held {
     explicit Held(config::Scene s) : scene(std::move(s)), engine(scene) {}
@@ -75,7 +78,7 @@ Query palpate_query(const config::Scene& scene, const cli::SweepSetting& setting
     cli::SceneEngine engine;
   };
   const auto held = std::make_shared<Held>(cli::with_setting(scene, setting));
-  Query q{"palpate " + cli::id_of(setting), returns, {}, {}, {}, {}};
+  Query q{name, returns, {}, {}, {}, {}};
   q.restart = [held] { held->engine.restart(); };
   q.ask = [held](std::span<const Pose> poses) {
     TickResult result;
@@ -106,34 +109,54 @@ void add_fcl(const std::shared_ptr<FclPair>& pair, std::uint32_t tool, std::vect
                  {}});
 }
 
+#ifdef PALPATE_BENCH_BULLET
+void add_bullet(const std::shared_ptr<BulletPair>& pair, std::uint32_t tool,
+                std::vector<Query>& out) {
+  const std::size_t a = tool, b = 1 - a;
+  out.push_back({"bullet GImpact",
+                 "contacts of triangles nearer than delta; no wrench",
+                 [] {},
+                 [=](std::span<const Pose> poses) {
+                   const BulletContacts found = pair->contacts(poses[a], poses[b]);
+                   return Answer{found.least_distance_m, found.count};
+                 },
+                 {},
+                 {}});
+}
+#endif
+
 void add_palpate(const config::Scene& scene, std::vector<Query>& out) {
   const double delta_m = scene.settings.delta_m;
   const double touch_N = scene.settings.stiffness_N_per_m * delta_m;
   using enum EngineKind;
   out.push_back(palpate_query(scene, {.engine = regions, .exact = true, .delta_m = delta_m},
+                              "palpate regions exact",
                               "a contact for each region nearer than delta; wrench"));
   out.push_back(palpate_query(scene,
                               {.engine = regions, .force_tolerance_N = touch_N, .delta_m = delta_m},
+                              "palpate regions to the force at touch",
                               "the same within a certified error of force; wrench"));
-  out.push_back(palpate_query(scene, {.exact = true, .delta_m = delta_m},
+  out.push_back(palpate_query(scene, {.exact = true, .delta_m = delta_m}, "palpate levels exact",
                               "all pairs of pieces nearer than delta; wrench"));
-  out.push_back(palpate_query(scene, {.s0 = 0.025, .delta_m = delta_m},
-                              "the same, detail below s0 left out; wrench"));
+  out.push_back(palpate_query(scene, {.s0 = 0.025, .delta_m = delta_m}, "palpate levels s0 2.5 %",
+                              "the same without detail below s0; wrench"));
 }
 
 void print_row(const Query& query, const Query& truth, double delta_m) {
   std::vector<double> us;
-  double results = 0, worst_m = 0;
+  double results = 0, worst_m = kNone;
   for (std::size_t i = 0; i < query.us.size(); ++i) {
     us.push_back(cli::percentile(query.us[i], 0.5));
     results += static_cast<double>(query.answers[i].results);
     const double true_m = truth.answers[i].distance_m;
     const double off_m = std::abs(query.answers[i].distance_m - true_m);
-    if (true_m > 0 && true_m < delta_m && !std::isnan(off_m)) worst_m = std::max(worst_m, off_m);
+    if (true_m > 0 && true_m < delta_m && !std::isnan(off_m)) worst_m = std::fmax(worst_m, off_m);
   }
-  std::printf("%s,%s,%.1f,%.1f,%.1f,%.1f,%.3g\n", query.name.c_str(), query.returns.c_str(),
+  std::printf("%s,%s,%.1f,%.1f,%.1f,%.1f,", query.name.c_str(), query.returns.c_str(),
               cli::percentile(us, 0.5), cli::percentile(us, 0.99), cli::percentile(us, 1.0),
-              results / static_cast<double>(us.size()), worst_m);
+              results / static_cast<double>(us.size()));
+  if (!std::isnan(worst_m)) std::printf("%.3g", worst_m);
+  std::puts("");
 }
 
 bake::Mesh mesh_of(const char* file) { return bake::read_mesh(file).mesh; }
@@ -148,7 +171,12 @@ void compare(int argc, char** argv) {
   std::vector<Pose> poses;
   for (const config::Body& body : scene.bodies) poses.push_back(body.pose);
   std::vector<Query> queries;
-  add_fcl(std::make_shared<FclPair>(mesh_of(argv[3]), mesh_of(argv[4])), scene.tool, queries);
+  const bake::Mesh tool = mesh_of(argv[3]), other = mesh_of(argv[4]);
+  add_fcl(std::make_shared<FclPair>(tool, other), scene.tool, queries);
+#ifdef PALPATE_BENCH_BULLET
+  add_bullet(std::make_shared<BulletPair>(tool, other, scene.settings.delta_m), scene.tool,
+             queries);
+#endif
   add_palpate(scene, queries);
   for (int pass = 0; pass < kPasses; ++pass) {
     for (Query& query : queries) run(query, track, poses);

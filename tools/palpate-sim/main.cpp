@@ -16,6 +16,7 @@
 #include "hal/simulator/falcon_device.hpp"
 #include "hal/simulator/open_device.hpp"
 #include "hal/usbip/server.hpp"
+#include "tools/palpate/error_line.hpp"
 #include "tools/palpate/key_file.hpp"
 #include "tools/realtime/scene_hand.hpp"
 
@@ -46,7 +47,7 @@ struct Options {
 std::atomic<bool> g_stop{false};
 
 int error(const std::string& message, Exit code) {
-  std::fprintf(stderr, "palpate-sim: error: %s\n", message.c_str());
+  cli::print_error("palpate-sim", message);
   return code;
 }
 
@@ -146,11 +147,8 @@ int run_and_report(int argc, char** argv) {
   } catch (const std::system_error& e) {
     return error("cannot be used: " + std::string(e.what()) + ": give another address or file",
                  kOther);
-  } catch (const std::exception& e) {
-    return error(std::string(e.what()) + ": internal: please report it with the command line",
-                 kOther);
   } catch (...) {
-    return error("unknown failure: internal: please report it with the command line", kOther);
+    return error(cli::internal_error(), kOther);
   }
 }
 

@@ -6,7 +6,6 @@
 
 #include <csignal>
 #include <cstdio>
-#include <exception>
 #include <initializer_list>
 #include <iostream>
 #include <new>
@@ -16,6 +15,7 @@
 #include "config/scene.hpp"
 #include "rt_core/image/format.hpp"
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/error_line.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -53,11 +53,7 @@ std::string version() {
 }
 
 int error(const std::string& message, Exit code) {
-  std::string line = message;
-  for (char& c : line) {
-    if (c == '\n' || c == '\r') c = ' ';
-  }
-  std::fprintf(stderr, "palpate: error: %s\n", line.c_str());
+  print_error("palpate", message);
   return code;
 }
 
@@ -117,11 +113,8 @@ int run_and_report(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return error("out of memory: this process: use a smaller input or a machine with more memory",
                  kOther);
-  } catch (const std::exception& e) {
-    return error(std::string(e.what()) + ": internal: please report it with the command line",
-                 kOther);
   } catch (...) {
-    return error("unknown failure: internal: please report it with the command line", kOther);
+    return error(internal_error(), kOther);
   }
 }
 

@@ -13,9 +13,12 @@
 namespace palpate::cli {
 namespace {
 
+constexpr std::size_t kStretch = 10;  // ticks
+
 struct MakeMotionOptions {
   std::string name, scene, poses;
   std::size_t ticks = 2000;
+  std::size_t one_in = 1;
   std::uint64_t seed = 1;
   bool quiet = false;
 };
@@ -70,6 +73,7 @@ void make_motion(const MakeMotionOptions& options) {
   MotionPlacing placing(scene);
   std::string text = std::string(kPosesHeader) + "\n";
   for (std::size_t tick = 0; tick < options.ticks; ++tick) {
+    if (tick / kStretch % options.one_in != 0) continue;
     const double share = double(tick) / double(options.ticks);
     const Pose pose = placing.place(waymark(motion, share, options.seed), motion.closing);
     text += row_of(tick, scene.bodies[scene.tool].name, pose);
@@ -89,6 +93,13 @@ void add_make_motion(CLI::App& app) {
       ->required();
   command->add_option("-o,--output", options->poses, "CSV file to write")->required();
   command->add_option("--ticks", options->ticks, "How many")
+      ->check(number_between(1, 1e7))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--one-in", options->one_in,
+          "Of this many stretches of ten ticks write one: a sample of the motion at its own "
+          "speed")
       ->check(number_between(1, 1e7))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Changes phases")

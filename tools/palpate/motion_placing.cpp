@@ -11,18 +11,20 @@
 namespace palpate::cli {
 namespace {
 
-constexpr double kReach = 3.0;       // of delta: how far the distance is known
-constexpr double kPrecision = 0.01;  // of delta
-constexpr double kLeastGap = 0.02;   // of delta, that distance queries are used for
+constexpr double kReach = 3.0;        // of delta: how far the distance is known
+constexpr double kReachInside = 1.5;  // of the clearance, where that is less: a part in another is
+                                      // never farther, and all that is nearer has to be looked at
+constexpr double kPrecision = 0.01;   // of delta
+constexpr double kLeastGap = 0.02;    // of delta, that distance queries are used for
 constexpr int kMaxSteps = 100;
 constexpr double kLeastSlope = 0.25;  // of distance along the approach that a step counts on
 
-config::Scene seeing_farther(const config::Scene& scene) {
+config::Scene seeing(const config::Scene& scene, double reach_m) {
   config::Scene out = scene;
   out.settings.engine = EngineKind::regions;
   out.settings.exact = true;
   out.settings.force_tolerance_N = 0;
-  out.settings.delta_m = kReach * scene.settings.delta_m;
+  out.settings.delta_m = reach_m;
   return out;
 }
 
@@ -30,9 +32,9 @@ config::Scene seeing_farther(const config::Scene& scene) {
 
 MotionPlacing::MotionPlacing(const config::Scene& scene)
     : scene_(scene),
-      wide_(seeing_farther(scene)),
-      engine_(wide_),
-      poses_(engine_.start_poses()),
+      wide_(seeing(scene, kReach * scene.settings.delta_m)),
+      engine_(std::make_unique<SceneEngine>(wide_)),
+      poses_(engine_->start_poses()),
       tool_(scene.tool),
       other_(1 - std::min<std::size_t>(scene.tool, 1)) {
   if (scene.bodies.size() != 2) {
@@ -51,12 +53,25 @@ Pose MotionPlacing::moved(const Waymark& at, double along_m) const {
 double MotionPlacing::distance_m(const Waymark& at, double along_m) {
   poses_[tool_] = moved(at, along_m);
   TickResult result;
-  const Status status = tick(engine_.engine(), poses_, {}, result);
+  const Status status = tick(engine_->engine(), poses_, {}, result);
   if (status != Status::ok) {
     throw Failure(kOther, std::string("the engine failed (") + describe(status) + ")",
                   scene_.file.string(), "check the scene's poses");
   }
   return std::isnan(result.min_distance_m) ? wide_.settings.delta_m : result.min_distance_m;
+}
+
+/// The gap where the waymark is; the first one is what is looked as far as from there on.
+double MotionPlacing::clearance_m(const Waymark& at) {
+  const double gap_m = std::max(0.0, distance_m(at, 0));
+  const double reach_m = kReachInside * gap_m;
+  if (!narrowed_ && reach_m > 0 && reach_m < wide_.settings.delta_m) {
+    engine_.reset();  // first: it refers to the scene
+    wide_ = seeing(scene_, reach_m);
+    engine_ = std::make_unique<SceneEngine>(wide_);
+  }
+  narrowed_ = true;
+  return gap_m;
 }
 
 /// Back along the approach from the last place, farther and farther, until the gap is large enough.
@@ -97,7 +112,7 @@ Pose MotionPlacing::place(const Waymark& at, Closing closing) {
   double unit_m = delta_m;
   double from_m = 0;
   if (closing == Closing::from_inside) {
-    unit_m = std::min(delta_m, std::max(0.0, distance_m(at, 0)));
+    unit_m = std::min(delta_m, clearance_m(at));
   } else {
     from_m = free_place(at, std::max(at.gap, kLeastGap) * unit_m);
   }

@@ -3,6 +3,7 @@
 // from the rest is what is wanted.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "config/scene.hpp"
@@ -29,15 +30,17 @@ class MotionPlacing {
  private:
   [[nodiscard]] Pose moved(const Waymark& at, double along_m) const;
   double distance_m(const Waymark& at, double along_m);
+  double clearance_m(const Waymark& at);
   double free_place(const Waymark& at, double gap_m);
   double close(const Waymark& at, double from_m, double gap_m);
 
   const config::Scene& scene_;
-  config::Scene wide_;  // the same with a tolerance that sees farther
-  SceneEngine engine_;
+  config::Scene wide_;  // the same with a tolerance that sees as far as placing needs
+  std::unique_ptr<SceneEngine> engine_;
   std::vector<Pose> poses_;
   std::size_t tool_, other_;
   double last_m_ = 0;  // along the approach
+  bool narrowed_ = false;
 };
 
 }  // namespace palpate::cli

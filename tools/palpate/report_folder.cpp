@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <system_error>
 
 #include "config/text_file.hpp"
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/image_file.hpp"
 #include "tools/palpate/report_input.hpp"
 
 namespace palpate::cli {
@@ -153,6 +155,16 @@ void pair_contacts(const Found& found, const std::vector<Table>& tables, ReportS
   }
 }
 
+double largest_radius_m(const config::Scene& scene) {
+  std::set<fs::path> images;
+  for (const config::Body& body : scene.bodies) images.insert(body.image);
+  double radius_m = 0;
+  for (const fs::path& file : images) {
+    radius_m = std::max(radius_m, ImageFile(file).view().header->radius_m);
+  }
+  return radius_m;
+}
+
 void read_view(const Found& found, const std::vector<Table>& tables, const fs::path& folder,
                const ReportHints& hints, ReportInput& out) {
   const nlohmann::json json = about(folder);
@@ -175,6 +187,9 @@ void read_view(const Found& found, const std::vector<Table>& tables, const fs::p
         poses.string(), "give the poses that were replayed");
   }
   pair_contacts(found, tables, view);
+  if (out.kind == ReportKind::replay && tables.front().exact) {  // exact ones come first
+    out.judged = {view.scene.settings.delta_m, largest_radius_m(view.scene)};
+  }
   out.view = std::move(view);
 }
 

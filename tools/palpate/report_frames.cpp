@@ -3,6 +3,9 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "tools/palpate/sweep_figures.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -42,11 +45,7 @@ DurationBins bin_durations(std::span<const std::vector<std::uint64_t>> sets_ns) 
 
 double quantile(std::vector<double> values, double share) {
   std::erase_if(values, [](double v) { return std::isnan(v); });
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const double rank = std::ceil(share * static_cast<double>(values.size()));
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return percentile(std::move(values), share);
 }
 
 double distance_error_m(const TickRow& tick, const TickRow& exact) {

@@ -62,8 +62,7 @@ inline constexpr int kBinsPerOctave = 4;
 /// for ticks that were not timed, are left out. No bins where nothing was timed.
 DurationBins bin_durations(std::span<const std::vector<std::uint64_t>> sets_ns);
 
-/// The smallest of the values that at least `share` of them do not exceed (nearest rank); NaN of
-/// none, and NaN values are left out. @param share in (0, 1]
+/// percentile() of the values that are not NaN.
 double quantile(std::vector<double> values, double share);
 
 /// How far a tick's least distance is from the exact one's, metres; NaN where one of them has none.

@@ -43,6 +43,12 @@ struct ReportScene {
   std::size_t contacts_of = 0;
 };
 
+/// What a certificate is judged by, see certificate_broken().
+struct JudgedBy {
+  double delta_m = 0;
+  double radius_m = 0;  ///< of the larger body
+};
+
 struct ReportInput {
   ReportKind kind = ReportKind::replay;
   std::string name;                  ///< of the folder or file
@@ -50,6 +56,7 @@ struct ReportInput {
   std::vector<SweepPoint> settings;  ///< of a sweep
   std::optional<ReportRun> run;
   std::optional<ReportScene> view;  ///< only where there are lines
+  std::optional<JudgedBy> judged;   ///< of a replay with an exact line whose scene is known
   std::vector<std::string> notes;   ///< what was left out and why, a sentence each
 };
 

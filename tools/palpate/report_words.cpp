@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tools/palpate/report_frames.hpp"
+#include "tools/palpate/sweep_figures.hpp"
 #include "tools/palpate/words.hpp"
 #include "tools/realtime/safety.hpp"
 
@@ -116,7 +117,19 @@ std::string touch(const ReportLine& line) {
                          percent(double(cut) / ticks) + ").");
 }
 
-std::string certificate(const ReportLine& line, const ReportLine* exact) {
+std::string breaches(const ReportLine& line, const ReportLine& exact, const JudgedBy& by) {
+  std::uint64_t broken = 0;
+  for (std::size_t i = 0; i < line.ticks.size(); ++i) {
+    const double truth_m = exact.ticks[i].min_distance_m;
+    if (certificate_broken(line.ticks[i], truth_m, by.delta_m, by.radius_m)) ++broken;
+  }
+  return broken == 0 ? " It was never broken."
+                     : " It was broken in " + count_of(broken, "tick", "ticks") +
+                           ": the true distance lay outside the bound.";
+}
+
+std::string certificate(const ReportLine& line, const ReportLine* exact,
+                        const std::optional<JudgedBy>& judged) {
   std::string out =
       "the certificate says that the least distance is within " +
       length(quantile_of(line.ticks, 0.5,
@@ -133,7 +146,7 @@ std::string certificate(const ReportLine& line, const ReportLine* exact) {
           "; the true error against " + exact->name + " is " + length(error_m) + " at the median";
     }
   }
-  return out + ".";
+  return out + "." + (exact != nullptr && judged ? breaches(line, *exact, *judged) : "");
 }
 
 Words line_words(const ReportInput& input) {
@@ -144,7 +157,7 @@ Words line_words(const ReportInput& input) {
     out.push_back(line.name + ": a tick " + times(line) + ". " + touch(line));
     if (line.exact) continue;
     out.push_back(line.name + ": " +
-                  certificate(line, exact == input.lines.end() ? nullptr : &*exact));
+                  certificate(line, exact == input.lines.end() ? nullptr : &*exact, input.judged));
   }
   return out;
 }

@@ -6,7 +6,7 @@ packages_test="libgtest-dev clang libclang-rt-14-dev clang-format clang-tidy bin
 # Only for the tests of reports in a browser: two minutes to install on a bare machine.
 packages_browser="chromium"
 # Only for tools/bench, which is built where these are found.
-packages_bench="libbenchmark-dev libfcl-dev"
+packages_bench="libbenchmark-dev libfcl-dev libbullet-dev"
 
 # need_packages NAME...: installs what is missing; without root by sudo; without either says which are missing and gives up.
 need_packages() {
