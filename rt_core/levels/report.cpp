@@ -46,7 +46,10 @@ LeafContact remeasured(const PairState& pair, const Node& node) noexcept {
   contact.upper_bound = norm(apart);
   const double along = dot(apart, contact.normal);
   const double slid = norm(apart - along * contact.normal);
-  contact.distance = along >= 0 ? contact.upper_bound : along + slid;
+  const double guess = along >= 0 ? contact.upper_bound : along + slid;
+  // Points that have slid past each other may look deep where it is proved that nothing is.
+  const double certain = certain_now(pair, node);
+  contact.distance = guess < certain ? certain : guess;
   return contact;
 }
 

@@ -34,7 +34,8 @@ inline void hand_over(const Node& from, Node& to) noexcept {
 /// The contact kept in a node, measured again at its material points, with its normal as it turned
 /// with a. While these are apart along the normal it is as long as they are; overlap is what they
 /// overlap along the normal, less what they have slid: so it ends where the bodies have parted or
-/// slid on. The points themselves bound the true distance from above.
+/// slid on. Never less than what is proved of the node. The points themselves bound the true
+/// distance from above.
 LeafContact remeasured(const PairState& pair, const Node& node) noexcept;
 
 class Report {
