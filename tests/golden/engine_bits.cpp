@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bits of the levels engine: wrenches, contacts and counts of a fixed motion under budgets in
-// work units. They are the same for every compiler, optimisation and processor, and change only
-// together with the engine.
+// The bits of both engines: wrenches, contacts and counts of a fixed motion under budgets in work
+// units. They are the same for every compiler, optimisation and processor, and change only together
+// with the engine.
 //
-//   engine_bits IMAGE    prints what it found; exit status 1 where it is not what it has to be
+//   engine_bits LEVELS REGIONS    images for either engine; prints what it found; exit status 1
+//                                 where it is not what it has to be
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -28,17 +29,33 @@ constexpr double kDelta_m = 0.05;
 constexpr std::uint64_t kUnlimited = Budget{}.units;
 const Case kCases[] = {
     {"exact", {.delta_m = kDelta_m, .exact = true}, kUnlimited, 0xa316e3713c66e891},
-    {"exact, 40 units", {.delta_m = kDelta_m, .exact = true}, 40, 0xe54f960034440af8},
-    {"simplified", {.delta_m = kDelta_m, .s0 = 0.02}, kUnlimited, 0xeefe6d8196e3b666},
-    {"simplified, 40 units", {.delta_m = kDelta_m, .s0 = 0.02}, 40, 0x863abf8e0b6fdbef},
+    {"exact, 40 units", {.delta_m = kDelta_m, .exact = true}, 40, 0x944b6a0a84dd9f75},
+    {"simplified", {.delta_m = kDelta_m, .s0 = 0.02}, kUnlimited, 0x8861073d93721d5b},
+    {"simplified, 40 units", {.delta_m = kDelta_m, .s0 = 0.02}, 40, 0xd3314db416d93384},
+    {"simplified, no dives",
+     {.delta_m = kDelta_m, .s0 = 0.02, .contact_dive = false},
+     40,
+     0x3171ef0a2fa4eb2f},
     {"stop on surface, by ratio",
      {.delta_m = kDelta_m, .s0 = 0.005, .order = Order::ratio, .stop_on_surface = true},
      200,
-     0x5a812a8b5316aa4b},
+     0x76b48f18b1cde0ce},
     {"paper's bounds",
      {.delta_m = kDelta_m, .s0 = 0.02, .bounds = Bounds::paper},
      200,
-     0x92d4bded164a635d},
+     0xadd73468eb44e510},
+    {"regions, exact",
+     {.engine = EngineKind::regions, .delta_m = kDelta_m, .exact = true},
+     kUnlimited,
+     0x54868d55ad7b3c94},
+    {"regions, 100 units",
+     {.engine = EngineKind::regions, .delta_m = kDelta_m},
+     100,
+     0x444152d37e9b49a2},
+    {"regions, tolerance",
+     {.engine = EngineKind::regions, .delta_m = kDelta_m, .force_tolerance_N = 3},
+     kUnlimited,
+     0x1d66717079cd2b9b},
 };
 constexpr int kTicks = 200;
 
@@ -90,7 +107,7 @@ std::uint64_t hash_of(const ImageView& image, const Case& test) {
   const Scene scene{bodies, pairs, 0};
   const Limits limits{.nodes = 1u << 14, .contacts = 1u << 10, .clusters = 1u << 8};
   Engine* engine = nullptr;
-  const Memory memory(required_bytes(scene, limits));
+  const Memory memory(required_bytes(scene, limits, test.settings.engine));
   if (create(scene, test.settings, limits, memory.bytes(), engine) != Status::ok) return 0;
   Hash hash;
   for (int i = 0; i < kTicks; ++i) {
@@ -120,15 +137,19 @@ bool open(const char* file, std::span<std::byte> room, ImageView& out) {
 }  // namespace palpate
 
 int main(int argc, char** argv) {
-  const palpate::Memory room(1u << 20);
-  palpate::ImageView image;
-  if (argc != 2 || !palpate::open(argv[1], room.bytes(), image)) {
-    std::fputs("usage: engine_bits IMAGE\n", stderr);
+  const palpate::Memory of_levels(1u << 20);
+  const palpate::Memory of_regions(1u << 20);
+  palpate::ImageView levels;
+  palpate::ImageView regions;
+  if (argc != 3 || !palpate::open(argv[1], of_levels.bytes(), levels) ||
+      !palpate::open(argv[2], of_regions.bytes(), regions)) {
+    std::fputs("usage: engine_bits LEVELS REGIONS\n", stderr);
     return 2;
   }
   int failed = 0;
   for (const palpate::Case& test : palpate::kCases) {
-    const std::uint64_t found = palpate::hash_of(image, test);
+    const bool by_levels = test.settings.engine == palpate::EngineKind::levels;
+    const std::uint64_t found = palpate::hash_of(by_levels ? levels : regions, test);
     std::printf("%016llx %s\n", static_cast<unsigned long long>(found), test.name);
     if (found != test.hash) failed = 1;
   }
