@@ -23,13 +23,16 @@ void add_levels(std::vector<SweepSetting>& out, const SweepAxes& axes, double de
     for (const double s0 : axes.s0) {
       for (const double kappa : axes.kappa) {
         for (const bool interpolate : axes.interpolate) {
-          for (const double budget_us : axes.budget_us) {
-            s.bounds = bounds;
-            s.s0 = s0;
-            s.kappa = kappa;
-            s.interpolate = interpolate;
-            s.budget_us = budget_us;
-            add(out, s);
+          for (const bool contact_dive : axes.contact_dive) {
+            for (const double budget_us : axes.budget_us) {
+              s.bounds = bounds;
+              s.s0 = s0;
+              s.kappa = kappa;
+              s.interpolate = interpolate;
+              s.contact_dive = contact_dive;
+              s.budget_us = budget_us;
+              add(out, s);
+            }
           }
         }
       }
@@ -80,6 +83,7 @@ std::string id_of(const SweepSetting& s) {
     id += "-s0_" + text(s.s0);
     if (std::isfinite(s.kappa)) id += "-kappa_" + text(s.kappa);
     if (!s.interpolate) id += "-not_interpolated";
+    if (!s.contact_dive) id += "-no_dives";
   }
   if (!s.exact && !levels) id += "-tolerance_" + text(s.force_tolerance_N);
   if (levels && s.bounds == Bounds::paper) id += "-paper_bounds";
@@ -98,6 +102,7 @@ config::Scene with_setting(const config::Scene& scene, const SweepSetting& s) {
   out.settings.s0 = s.s0;
   out.settings.force_tolerance_N = s.force_tolerance_N;
   out.settings.interpolate = s.interpolate;
+  out.settings.contact_dive = s.contact_dive;
   out.settings.bounds = s.bounds;
   out.settings.delta_m = s.delta_m;
   out.kappa.reset();
