@@ -298,11 +298,26 @@ class Query {
       Active& item = active()[index];
       if (item.width <= kClosed) break;
       open_m -= width_m(item);
-      const auto share = static_cast<float>(share_m / pair_of(item).unit_m);
-      narrow(item, share);
+      narrow(item, share_of(item, share_m));
       open_m += width_m(item);
       if (truncated_) return;
       queue.push(index);
+    }
+    decide_crossings(share_m);
+  }
+
+  /// An interval may stay open by this much, but not down to zero: what crosses has a depth, of
+  /// which the interval says nothing.
+  float share_of(const Active& item, double share_m) noexcept {
+    const auto share = static_cast<float>(share_m / pair_of(item).unit_m);
+    const float half = 0.5f * upper_of(item);
+    return share < half ? share : half;
+  }
+
+  /// Regions of which a part not looked at may cross the other body by now.
+  void decide_crossings(double share_m) noexcept {
+    for (Active& item : active()) {
+      if (item.rest <= 0 && item.width > kClosed) close(item, share_of(item, share_m));
     }
   }
 

@@ -117,6 +117,22 @@ TEST(RegionsBudget, force_tolerance_is_kept_and_saves_work) {
   }
 }
 
+TEST(RegionsBudget, force_tolerance_hides_no_crossing) {
+  BakedScene exact = scene_with(kSettings);
+  Settings settings = kSettings;
+  settings.exact = false;
+  settings.force_tolerance_N = 30;
+  BakedScene tolerant = scene_with(settings);
+  int crossing = 0;
+  for (int i = 0; i < 4 * kTicks; ++i) {
+    const Pose poses[2] = {motion(i), {}};
+    const bool crosses = tick_or_fail(*exact.engine, poses).min_distance_m < 0;
+    EXPECT_EQ(tick_or_fail(*tolerant.engine, poses).min_distance_m < 0, crosses) << i;
+    if (crosses) ++crossing;
+  }
+  EXPECT_GT(crossing, kTicks / 4);
+}
+
 TEST(RegionsBudget, same_input_gives_the_same_bits) {
   for (const std::uint64_t units : {30u, 300u, 100000u}) {
     BakedScene one = scene_with(kSettings);
