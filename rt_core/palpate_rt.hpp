@@ -70,10 +70,10 @@ struct Settings {
   Order order = Order::deviation;  ///< exact queries always go nearest first
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
   /// Give contacts of simplified pieces the least distance of the original surfaces below them,
-  /// instead of their own (the paper's): the force then does not depend on the level. Costs queries
-  /// (levels/dive.hpp); where the budget ends refinement, contacts that were not reached are found
-  /// so too. No effect on exact queries that end in time.
-  bool contact_dive = true;
+  /// instead of their own (the paper's): the force then hardly depends on the level. Costs about as
+  /// many queries as refinement (levels/dive.hpp); where the budget ends refinement, contacts that
+  /// were not reached are found so too. An exact query does the latter in any case.
+  bool contact_dive = false;
 
   // Fewer pairs (levels engine). Each can be switched alone, so that its effect can be measured.
   // The first three never change which pairs are near; the last one leaves contacts out.

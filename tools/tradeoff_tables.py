@@ -54,8 +54,8 @@ def label(row):
         name += f", s0 {100 * float(row['s0']):g} %"
     if row["bounds"] == "paper":
         name += ", paper's bounds"
-    if row["contact_dive"] == "false":
-        name += ", no dives"
+    if row["contact_dive"] == "true":
+        name += ", dives"
     if row["budget_us"]:
         name += f", {float(row['budget_us']):g} us"
     if row["exact"] == "true" and float(row["truncated"]) > 0:

@@ -138,7 +138,6 @@ TEST(EngineLevels, contacts_do_not_depend_on_history) {
 double largest_jump(double s0, bool interpolate) {
   Settings settings = with_s0(s0, interpolate);
   settings.cluster_radius_m = 10;
-  settings.contact_dive = false;  // else a change of level hardly shows
   BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, settings);
   double last = 0, largest = 0;
   for (int i = 0; i < 850; ++i) {
@@ -178,7 +177,6 @@ TEST(EngineLevels, image_without_its_finest_levels_gives_the_same_bits_within_it
   for (const bool interpolate : {false, true}) {
     for (const std::uint64_t units : {40u, 1000000u}) {
       Settings settings = with_s0(s0, interpolate);
-      settings.contact_dive = false;
       BakedScene whole({bodies().a.view, bodies().b.view}, {{0, 1}}, settings);
       BakedScene part({small.view, bodies().b.view}, {{0, 1}}, settings);
       for (int i = 0; i < 40; ++i) {

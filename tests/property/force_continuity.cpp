@@ -87,8 +87,8 @@ INSTANTIATE_TEST_SUITE_P(Speeds, GroundJaws, testing::Values(0.1, 0.3), [](const
 });
 
 TEST(GroundJawsSlowly, without_interpolation_or_steadying_it_is_worse) {
-  const Settings simplified{.s0 = 0.05, .contact_dive = false};
-  const Settings uninterpolated{.s0 = 0.05, .interpolate = false, .contact_dive = false};
+  const Settings simplified{.s0 = 0.05};
+  const Settings uninterpolated{.s0 = 0.05, .interpolate = false};
   const double interpolated = largest_steps(simplified, kUnlimited, 0.1, false).force_N;
   const double plain = largest_steps(uninterpolated, kUnlimited, 0.1, false).force_N;
   EXPECT_GT(plain, 1.3 * interpolated);

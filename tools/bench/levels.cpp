@@ -55,12 +55,12 @@ constexpr Variant kSimplified[] = {
        s.stop_on_surface = true;
      }},
     {"s0 = 0.025", [](Settings&) {}},
-    {"s0 = 0.025, no dive", [](Settings& s) { s.contact_dive = false; }},
+    {"s0 = 0.025, dives", [](Settings& s) { s.contact_dive = true; }},
     {"s0 = 0.2", [](Settings& s) { s.s0 = 0.2; }},
-    {"s0 = 0.2, no dive",
+    {"s0 = 0.2, dives",
      [](Settings& s) {
        s.s0 = 0.2;
-       s.contact_dive = false;
+       s.contact_dive = true;
      }},
     {"s0 = 0.025, stop on surface", [](Settings& s) { s.stop_on_surface = true; }},
     {"s0 = 0.025, bounds = paper", [](Settings& s) { s.bounds = Bounds::paper; }},
@@ -72,11 +72,11 @@ constexpr Variant kSimplified[] = {
        s.s0 = 1e6;
        s.kappa = 0.1;
      }},
-    {"kappa = 0.1, no dive",
+    {"kappa = 0.1, dives",
      [](Settings& s) {
        s.s0 = 1e6;
        s.kappa = 0.1;
-       s.contact_dive = false;
+       s.contact_dive = true;
      }},
     {"kappa = 0.1, stop on surface", [](Settings& s) {
        s.s0 = 1e6;

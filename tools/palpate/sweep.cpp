@@ -50,7 +50,7 @@ SweepAxes axes_of(const Arguments& a, const config::Scene& scene) {
   axes.kappa = a.kappa.empty() ? std::vector{scene.kappa.value_or(kNoLimit)} : a.kappa;
   axes.delta_m = a.delta_m.empty() ? std::vector{scene.settings.delta_m} : a.delta_m;
   axes.interpolate = a.interpolate.empty() ? std::vector<bool>{true} : a.interpolate;
-  axes.contact_dive = a.contact_dive.empty() ? std::vector<bool>{true} : a.contact_dive;
+  axes.contact_dive = a.contact_dive.empty() ? std::vector<bool>{false} : a.contact_dive;
   axes.force_tolerance_N = a.force_tolerance_N;
   for (const double share : kToleranceShares) {
     if (!a.force_tolerance_N.empty()) break;
@@ -183,7 +183,7 @@ void add_axes(CLI::App& command, Arguments& a) {
   command.add_option("--interpolate", a.interpolate, "true, false; default: true")->delimiter(',');
   command
       .add_option("--contact-dive", a.contact_dive,
-                  "true, false (contacts as in the paper); default: true")
+                  "false (contacts as in the paper), true; default: false")
       ->delimiter(',');
   command.add_option("--bounds", a.bounds, "tight, paper")
       ->delimiter(',')

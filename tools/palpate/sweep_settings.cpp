@@ -83,7 +83,7 @@ std::string id_of(const SweepSetting& s) {
     id += "-s0_" + text(s.s0);
     if (std::isfinite(s.kappa)) id += "-kappa_" + text(s.kappa);
     if (!s.interpolate) id += "-not_interpolated";
-    if (!s.contact_dive) id += "-no_dives";
+    if (s.contact_dive) id += "-dives";
   }
   if (!s.exact && !levels) id += "-tolerance_" + text(s.force_tolerance_N);
   if (levels && s.bounds == Bounds::paper) id += "-paper_bounds";

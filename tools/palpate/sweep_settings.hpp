@@ -21,7 +21,7 @@ struct SweepSetting {
   double force_tolerance_N = 0;   ///< regions, not exact
   double budget_us = kNoLimit;    ///< infinity: none; exact: none
   bool interpolate = true;        ///< levels
-  bool contact_dive = true;       ///< levels, not exact
+  bool contact_dive = false;      ///< levels, not exact
   Bounds bounds = Bounds::tight;  ///< levels
   double delta_m = 0;
 
