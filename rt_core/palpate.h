@@ -161,7 +161,8 @@ palpate_status palpate_add_friction(palpate_engine* engine, const double* coeffi
                                     palpate_stick* sticks, double force_N[3], double torque_Nm[3]);
 
 /* The wrench of the last tick with contacts that resist the tool's velocity, by at most their own
- * force (force/linear_contact.hpp). damping_s: damping over stiffness, >= 0. O(1). */
+ * force (force/linear_contact.hpp). Velocities of the tool's origin and of its turning, world axes.
+ * damping_s: damping over stiffness, >= 0. O(1). */
 palpate_status palpate_damp(const palpate_engine* engine, const double linear_m_per_s[3],
                             const double angular_rad_per_s[3], double damping_s, double force_N[3],
                             double torque_Nm[3]);

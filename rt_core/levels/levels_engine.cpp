@@ -16,8 +16,8 @@ bool is_approximate(const Work& work, const Node& node) noexcept {
   return is_simplified(piece_a(pair, node)) || is_simplified(piece_b(pair, node));
 }
 
-/// Refinement and dives share what is left of the budget, round by round; in the last round there
-/// is no dive. Exact queries need dives only where they do not end in time.
+/// Refinement and dives share what is left of the budget, round by round; in the last round
+/// refinement may have all of it. Exact queries need dives only where they do not end in time.
 constexpr std::uint32_t kRounds = 4;
 constexpr std::uint64_t kDivesPart = 2;
 constexpr std::uint64_t kDivesPartExact = 8;

@@ -45,18 +45,27 @@ palpate_pose c_pose_of(const Pose& p) {
 std::vector<Vec3d> g_pushed;
 int g_tick = 0;
 
-TEST(CInterface, gives_the_same_bits_as_the_engine) {
-  const AlignedBytes a = ball(), b = block();
-  ImageView views[2];
-  ASSERT_EQ(validate(a, views[0]), Status::ok);
-  ASSERT_EQ(validate(b, views[1]), Status::ok);
-  const BodyPair pairs[1] = {{0, 1}};
-  const Scene scene{views, pairs, 0};
-  AlignedBytes memory(required_bytes(scene, {}));
-  Engine* engine = nullptr;
-  const Settings settings{.delta_m = 0.1};
-  ASSERT_EQ(create(scene, settings, {}, memory, engine), Status::ok);
+/// The scene of these tests in C++, to compare with.
+struct CppScene {
+  CppScene() {
+    EXPECT_EQ(validate(a, views[0]), Status::ok);
+    EXPECT_EQ(validate(b, views[1]), Status::ok);
+    const Scene scene{views, pairs, 0};
+    memory.resize(required_bytes(scene, {}));
+    EXPECT_EQ(create(scene, settings, {}, memory, engine), Status::ok);
+  }
 
+  AlignedBytes a = ball(), b = block();
+  ImageView views[2];
+  BodyPair pairs[1] = {{0, 1}};
+  Settings settings{.delta_m = 0.1};
+  AlignedBytes memory;
+  Engine* engine = nullptr;
+};
+
+TEST(CInterface, gives_the_same_bits_as_the_engine) {
+  const CppScene same;
+  const AlignedBytes &a = same.a, &b = same.b;
   palpate_image images[2];
   ASSERT_EQ(palpate_open(a.data(), a.size(), &images[0]), PALPATE_OK);
   ASSERT_EQ(palpate_open(b.data(), b.size(), &images[1]), PALPATE_OK);
@@ -90,7 +99,7 @@ TEST(CInterface, gives_the_same_bits_as_the_engine) {
     const palpate_pose c_poses[2] = {c_pose_of(poses[0]), c_pose_of(poses[1])};
     TickResult r;
     palpate_result c;
-    ASSERT_EQ(tick(*engine, poses, {.units = 50}, r), Status::ok);
+    ASSERT_EQ(tick(*same.engine, poses, {.units = 50}, r), Status::ok);
     const palpate_budget budget{50, nullptr, nullptr, 0};
     ASSERT_EQ(palpate_tick(c_engine, c_poses, &budget, &c), PALPATE_OK);
     EXPECT_EQ(std::memcmp(c.force_N, &r.wrench.force_N, sizeof c.force_N), 0);
@@ -199,17 +208,7 @@ TEST(CInterface, foretells_the_wrench_nearby) {
 
 TEST(CInterface, friction_and_damping_give_the_same_bits_as_in_cpp) {
   CScene scene;
-  const AlignedBytes a = ball(), b = block();
-  ImageView views[2];
-  ASSERT_EQ(validate(a, views[0]), Status::ok);
-  ASSERT_EQ(validate(b, views[1]), Status::ok);
-  const BodyPair pairs[1] = {{0, 1}};
-  const Scene same{views, pairs, 0};
-  AlignedBytes memory(required_bytes(same, {}));
-  Engine* engine = nullptr;
-  const Settings settings{.delta_m = 0.1};
-  ASSERT_EQ(create(same, settings, {}, memory, engine), Status::ok);
-
+  const CppScene same;
   const double coefficients[1] = {0.3};
   force::Stick sticks[1];
   force::Friction friction(coefficients, sticks);
@@ -227,8 +226,8 @@ TEST(CInterface, friction_and_damping_give_the_same_bits_as_in_cpp) {
     ASSERT_EQ(palpate_add_friction(scene.engine, coefficients, c_sticks, force_N, torque_Nm),
               PALPATE_OK);
     TickResult r;
-    ASSERT_EQ(tick(*engine, poses, {}, r), Status::ok);
-    friction.add(pairs, 0, settings, poses, r);
+    ASSERT_EQ(tick(*same.engine, poses, {}, r), Status::ok);
+    friction.add(same.pairs, 0, same.settings, poses, r);
     EXPECT_EQ(std::memcmp(force_N, &r.wrench.force_N, sizeof force_N), 0);
     EXPECT_EQ(std::memcmp(torque_Nm, &r.wrench.torque_Nm, sizeof torque_Nm), 0);
     along_N = std::max(along_N, std::abs(force_N[1] - before.force_N[1]));
