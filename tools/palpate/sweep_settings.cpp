@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 namespace palpate::cli {
 namespace {
@@ -17,38 +18,35 @@ void add(std::vector<SweepSetting>& out, const SweepSetting& setting) {
   if (std::find(out.begin(), out.end(), setting) == out.end()) out.push_back(setting);
 }
 
-void add_levels(std::vector<SweepSetting>& out, const SweepAxes& axes, double delta_m) {
-  SweepSetting s{.engine = EngineKind::levels, .delta_m = delta_m};
-  for (const Bounds bounds : axes.bounds) {
-    for (const double s0 : axes.s0) {
-      for (const double kappa : axes.kappa) {
-        for (const bool interpolate : axes.interpolate) {
-          for (const bool contact_dive : axes.contact_dive) {
-            for (const double budget_us : axes.budget_us) {
-              s.bounds = bounds;
-              s.s0 = s0;
-              s.kappa = kappa;
-              s.interpolate = interpolate;
-              s.contact_dive = contact_dive;
-              s.budget_us = budget_us;
-              add(out, s);
-            }
-          }
-        }
-      }
-    }
+/// Each of the settings with each value in turn.
+template <class Value>
+void cross(std::vector<SweepSetting>& settings, const std::vector<Value>& values,
+           Value SweepSetting::*axis) {
+  std::vector<SweepSetting> out;
+  for (const SweepSetting& setting : settings) {
+    for (const Value value : values) out.emplace_back(setting).*axis = value;
   }
+  settings = std::move(out);
+}
+
+void add_levels(std::vector<SweepSetting>& out, const SweepAxes& axes, double delta_m) {
+  std::vector<SweepSetting> all = {{.engine = EngineKind::levels, .delta_m = delta_m}};
+  cross(all, axes.bounds, &SweepSetting::bounds);
+  cross(all, axes.s0, &SweepSetting::s0);
+  cross(all, axes.kappa, &SweepSetting::kappa);
+  cross(all, axes.interpolate, &SweepSetting::interpolate);
+  cross(all, axes.contact_dive, &SweepSetting::contact_dive);
+  cross(all, axes.budget_us, &SweepSetting::budget_us);
+  for (const SweepSetting& setting : all) add(out, setting);
 }
 
 void add_regions(std::vector<SweepSetting>& out, const SweepAxes& axes, double delta_m) {
-  SweepSetting s{.engine = EngineKind::regions, .delta_m = delta_m};
-  for (const double tolerance_N : axes.force_tolerance_N) {
-    for (const double budget_us : axes.budget_us) {
-      s.force_tolerance_N = tolerance_N;
-      s.budget_us = budget_us;
-      const bool same_as_exact = tolerance_N == 0 && std::isinf(budget_us);
-      if (!same_as_exact) add(out, s);
-    }
+  std::vector<SweepSetting> all = {{.engine = EngineKind::regions, .delta_m = delta_m}};
+  cross(all, axes.force_tolerance_N, &SweepSetting::force_tolerance_N);
+  cross(all, axes.budget_us, &SweepSetting::budget_us);
+  for (const SweepSetting& setting : all) {
+    const bool same_as_exact = setting.force_tolerance_N == 0 && std::isinf(setting.budget_us);
+    if (!same_as_exact) add(out, setting);
   }
 }
 
