@@ -4,6 +4,9 @@
 namespace palpate::regions {
 namespace {
 
+/// Normals that cancel to less than this share of the curve's length tell no direction.
+constexpr double kLeastDecided = 1e-3;
+
 Crossing crossing_of(const levels::PairState& pair, std::uint32_t piece_a, std::uint32_t piece_b,
                      convex::PenetrationScratch& scratch) noexcept {
   Crossing out;
@@ -31,8 +34,6 @@ Crossing crossing_of(const levels::PairState& pair, std::uint32_t piece_a, std::
   return out;
 }
 
-}  // namespace
-
 Crossing deepest(const levels::PairState& pair, CrossingScratch& scratch) noexcept {
   Crossing best;
   for (std::uint32_t i = 0; i < scratch.list.count; ++i) {
@@ -41,6 +42,21 @@ Crossing deepest(const levels::PairState& pair, CrossingScratch& scratch) noexce
     if (next.depth > best.depth) best = next;
   }
   return best;
+}
+
+}  // namespace
+
+Crossing overlap(const levels::PairState& pair, CrossingScratch& scratch) noexcept {
+  Crossing out = deepest(pair, scratch);
+  const CrossingCurve& curve = scratch.list.curve;
+  const double decided = norm(curve.out);
+  if (decided <= kLeastDecided * curve.length) return out;
+  out.normal = (1 / decided) * curve.out;
+  const Vec3d middle = (1 / curve.length) * curve.moment;
+  const Vec3d half = (0.5 * out.depth) * out.normal;
+  out.point_a = middle - half;
+  out.point_b = middle + half;
+  return out;
 }
 
 }  // namespace palpate::regions

@@ -16,7 +16,7 @@ struct CrossingScratch {
   CrossingList list;
 };
 
-/// In the coordinates of a, lengths in units. Moving a by depth * normal parts the two pieces.
+/// In the coordinates of a, lengths in units: point_b - point_a = depth * normal.
 struct Crossing {
   double depth = -1;
   Vec3d point_a{};
@@ -27,11 +27,16 @@ struct Crossing {
   bool exact = true;
 };
 
-/// The deepest overlap of the pairs of pieces in scratch.list, which is not empty.
+/// The overlap of a region whose list is not empty: as deep as the deepest of the pairs of pieces,
+/// about the middle of the curve in which the surfaces cross and in the direction in which it leads
+/// out (CrossingCurve).
 ///
-/// Depth and direction are those of convex pieces of the original surface, as in the levels engine.
-/// They go to zero as the triangles part, and a pair that joins the list joins it with none. Cost:
-/// one penetration query a pair.
-Crossing deepest(const levels::PairState& pair, CrossingScratch& scratch) noexcept;
+/// Depths are those of convex pieces of the original surface, as in the levels engine; they go to
+/// zero as the pieces part. The directions that these are least in are of no use: a piece of a
+/// detailed surface is often thinner than the overlap is deep, so that its other side is nearer,
+/// and where two ways are equally long the least turns at once. It is taken only where the normals
+/// along the curve cancel, as of a blade that has passed through a wall, or where both surfaces may
+/// have been met from their backs. Cost: one penetration query a pair.
+Crossing overlap(const levels::PairState& pair, CrossingScratch& scratch) noexcept;
 
 }  // namespace palpate::regions

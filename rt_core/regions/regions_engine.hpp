@@ -81,8 +81,8 @@ struct Demand {
 /// no other pair can have come as near; then the region is searched again (search.hpp), under a
 /// budget the widest interval first and closed in steps, after a cheap look at the witness's
 /// neighbours. Whatever ends it, every interval holds its distance, and every witness nearer than
-/// delta is a contact. Where triangles cross, the pieces that they belong to give depth and
-/// direction (crossing.hpp).
+/// delta is a contact. Where triangles cross, the pieces that they belong to give the depth and
+/// the curve in which they do the direction (crossing.hpp).
 ///
 /// A contact's pieces are those of level 0 that hold the witnesses. Cost: the budget, plus
 /// O(regions), plus one witness of each near region.

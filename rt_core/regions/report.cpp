@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/report.hpp"
 
+#include "rt_core/regions/region_triangle.hpp"
+
 namespace palpate::regions {
 namespace {
 
 using image::RegionTriangle;
 using levels::PairState;
-
-Vec3d corner(const RegionTriangle& t, std::uint32_t i, double scale) noexcept {
-  return scale * Vec3d{static_cast<double>(t.corners[3 * i]),
-                       static_cast<double>(t.corners[3 * i + 1]),
-                       static_cast<double>(t.corners[3 * i + 2])};
-}
 
 class Report {
  public:
@@ -120,9 +116,7 @@ class Report {
       return false;
     }
     const ImageView& b = *pair.image_b;
-    const std::uint32_t piece = b.region_triangles[state_of(item).witness.b].piece;
-    return (b.header->flags & static_cast<std::uint32_t>(image::HeaderFlag::open)) == 0 &&
-           (b.pieces[piece].flags & static_cast<std::uint32_t>(image::PieceFlag::back_open)) == 0;
+    return is_closed(b, b.region_triangles[state_of(item).witness.b]);
   }
 
   /// The outward normal of the triangle of b.
@@ -139,13 +133,14 @@ class Report {
     const PairFrame& frame = memory_.frames[item.pair];
     const Witness& witness = state_of(item).witness;
     CrossingScratch& scratch = *memory_.crossing;
-    scratch.list.count = 0;
-    find_crossings(*memory_.kernels, frame, *memory_.search, pace_, item.region, scratch.list);
+    scratch.list = {};
+    find_crossings(*memory_.kernels, pair, frame, *memory_.search, pace_, item.region,
+                   scratch.list);
     // Only where the budget or rounding kept the search from finding any: the list shall not depend
     // on how the witness came about.
-    if (scratch.list.count == 0) note_crossing(frame, witness.a, witness.b, scratch.list);
+    if (scratch.list.count == 0) note_crossing(pair, witness.a, witness.b, scratch.list);
     if (scratch.list.count == kMaxCrossings) result_.iteration_cap_met = true;
-    const Crossing c = deepest(pair, scratch);
+    const Crossing c = overlap(pair, scratch);
     if (!c.exact) result_.iteration_cap_met = true;
     add(item, {c.point_a, c.point_b, c.normal, -c.depth, c.piece_a, c.piece_b});
   }

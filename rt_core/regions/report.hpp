@@ -14,7 +14,7 @@ namespace palpate::regions {
 /// any more is as deep as it is far from that face.
 ///
 /// Witnesses are placed in double and compared relative to the pair, sixteen at a time. Cost:
-/// O(active), and for every crossing region what find_crossings() and deepest() take.
+/// O(active), and for every crossing region what find_crossings() and overlap() take.
 void report(QueryMemory& memory, std::span<const Active> active, Pace& pace,
             QueryResult& result) noexcept;
 

@@ -49,7 +49,9 @@ class Search {
   }
 
   /// Looks at everything within the limit, and keeps what crosses.
-  void collect(const image::Region& region, CrossingList& list) noexcept {
+  void collect(const levels::PairState& pair, const image::Region& region,
+               CrossingList& list) noexcept {
+    pair_ = &pair;
     crossings_ = &list;
     visit_root(child_name(region.parent, region.slot));
     static_cast<void>(finish());
@@ -261,9 +263,8 @@ class Search {
   void note_crossings(std::uint32_t crossing) noexcept {
     for (std::uint32_t left = crossing & ((1u << pending_) - 1u); left != 0; left &= left - 1) {
       const int i = __builtin_ctz(left);
-      note_crossing(frame_, scratch_.batch_a[i], scratch_.batch_b[i], *crossings_);
+      note_crossing(*pair_, scratch_.batch_a[i], scratch_.batch_b[i], *crossings_);
     }
-    if (crossings_->count == kMaxCrossings) size_ = 0;  // nothing more can be kept
   }
 
   void lower_threshold() noexcept {
@@ -313,7 +314,8 @@ class Search {
   Centre centre_{};        // of the single box, beside them
   std::uint32_t size_ = 0;
   std::uint32_t pending_ = 0;
-  CrossingList* crossings_ = nullptr;
+  const levels::PairState* pair_ = nullptr;
+  CrossingList* crossings_ = nullptr;  // null: distances are asked for
 };
 
 std::uint32_t neighbour(const ImageView& image, std::uint32_t triangle, std::uint32_t i) noexcept {
@@ -377,21 +379,11 @@ Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scr
   return Search(kernels, frame, scratch, pace, witness, reach).run(frame.a->regions[region]);
 }
 
-void note_crossing(const PairFrame& frame, std::uint32_t triangle_a, std::uint32_t triangle_b,
-                   CrossingList& list) noexcept {
-  const std::uint32_t a = frame.a->region_triangles[triangle_a].piece;
-  const std::uint32_t b = frame.b->region_triangles[triangle_b].piece;
-  for (std::uint32_t i = 0; i < list.count; ++i) {
-    if (list.piece_a[i] == a && list.piece_b[i] == b) return;
-  }
-  if (list.count == kMaxCrossings) return;
-  list.piece_a[list.count] = a;
-  list.piece_b[list.count++] = b;
-}
-
-void find_crossings(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
-                    Pace& pace, std::uint32_t region, CrossingList& list) noexcept {
-  Search(kernels, frame, scratch, pace, {}, {kRounding, 0}).collect(frame.a->regions[region], list);
+void find_crossings(const Kernels& kernels, const levels::PairState& pair, const PairFrame& frame,
+                    SearchScratch& scratch, Pace& pace, std::uint32_t region,
+                    CrossingList& list) noexcept {
+  Search(kernels, frame, scratch, pace, {}, {kRounding, 0})
+      .collect(pair, frame.a->regions[region], list);
 }
 
 }  // namespace palpate::regions

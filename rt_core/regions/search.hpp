@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "rt_core/base/meter.hpp"
+#include "rt_core/regions/crossing_list.hpp"
 #include "rt_core/regions/kernels.hpp"
 #include "rt_core/regions/near_pairs.hpp"
 #include "rt_core/regions/pair_frame.hpp"
@@ -104,19 +105,10 @@ struct Reach {
 Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
               std::uint32_t region, const Witness& witness, const Reach& reach) noexcept;
 
-/// Pairs of pieces (level 0) whose triangles cross, each once; more than fit are left out.
-inline constexpr std::uint32_t kMaxCrossings = 16;
-struct CrossingList {
-  std::uint32_t count = 0;
-  std::uint32_t piece_a[kMaxCrossings] = {};
-  std::uint32_t piece_b[kMaxCrossings] = {};
-};
-void note_crossing(const PairFrame& frame, std::uint32_t triangle_a, std::uint32_t triangle_b,
-                   CrossingList& list) noexcept;
-
-/// Adds the pairs of pieces whose triangles cross in a region, until the list is full or the budget
-/// is used up. Boxes of crossing triangles overlap, so that none is passed over.
-void find_crossings(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
-                    Pace& pace, std::uint32_t region, CrossingList& list) noexcept;
+/// Adds all pairs of triangles that cross in a region, until the budget is used up. Boxes of
+/// crossing triangles overlap, so that none is passed over.
+void find_crossings(const Kernels& kernels, const levels::PairState& pair, const PairFrame& frame,
+                    SearchScratch& scratch, Pace& pace, std::uint32_t region,
+                    CrossingList& list) noexcept;
 
 }  // namespace palpate::regions

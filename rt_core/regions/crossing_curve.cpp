@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/crossing_curve.hpp"
+
+#include "rt_core/regions/region_triangle.hpp"
+
+namespace palpate::regions {
+namespace {
+
+using image::RegionTriangle;
+
+struct Triangle {
+  Vec3d corners[3];
+  Vec3d normal{};  // as long as twice the area
+};
+
+/// Where a triangle meets the plane of another.
+struct Cut {
+  Vec3d begin{};
+  Vec3d end{};
+  double depth = 0;  // of the lowest corner below the plane
+  bool found = false;
+};
+
+/// What the cuts of two triangles, which lie on one line, have in common.
+struct Segment {
+  Vec3d begin{};
+  Vec3d end{};
+  double length = 0;  // 0: nothing
+  double share_b = 0.5;
+};
+
+Triangle triangle(Vec3d p, Vec3d q, Vec3d r) noexcept { return {{p, q, r}, cross(q - p, r - p)}; }
+
+/// A corner in the plane counts as above it, so that two edges pass through it or none.
+Cut cut(const Triangle& t, const Triangle& plane, Vec3d along) noexcept {
+  double above[3];
+  for (int i = 0; i < 3; ++i) above[i] = dot(plane.normal, t.corners[i] - plane.corners[0]);
+  Vec3d ends[2];
+  int count = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int j = i < 2 ? i + 1 : 0;
+    if ((above[i] < 0) == (above[j] < 0)) continue;
+    const double share = above[i] / (above[i] - above[j]);
+    ends[count++] = t.corners[i] + share * (t.corners[j] - t.corners[i]);
+  }
+  if (count != 2) return {};
+  const bool forward = dot(along, ends[1] - ends[0]) >= 0;
+  double lowest = above[0] < above[1] ? above[0] : above[1];
+  lowest = above[2] < lowest ? above[2] : lowest;
+  return {ends[forward ? 0 : 1], ends[forward ? 1 : 0], -lowest / norm(plane.normal), true};
+}
+
+/// Nearly all to the way along which the triangles part sooner. Below both planes lie corners, so
+/// that the depths are not both zero.
+double share_of_b(double depth_of_a, double depth_of_b) noexcept {
+  const double far = depth_of_a / (depth_of_a + depth_of_b);
+  const double near = 1 - far;
+  const double far2 = far * far;
+  const double near2 = near * near;
+  return near2 / (near2 + far2);
+}
+
+Segment common(const Triangle& a, const Triangle& b) noexcept {
+  const Vec3d both = cross(a.normal, b.normal);
+  const double size = norm(both);
+  if (!(size > 0)) return {};
+  const Vec3d along = (1 / size) * both;
+  const Cut of_a = cut(a, b, along);
+  const Cut of_b = cut(b, a, along);
+  if (!of_a.found || !of_b.found) return {};
+  const bool a_later = dot(along, of_a.begin - of_b.begin) > 0;
+  const bool a_sooner = dot(along, of_b.end - of_a.end) > 0;
+  Segment out{a_later ? of_a.begin : of_b.begin, a_sooner ? of_a.end : of_b.end};
+  const double length = dot(along, out.end - out.begin);
+  if (!(length > 0)) return {};
+  out.length = length;
+  out.share_b = share_of_b(of_a.depth, of_b.depth);
+  return out;
+}
+
+}  // namespace
+
+void add_segment(const levels::PairState& pair, std::uint32_t triangle_a, std::uint32_t triangle_b,
+                 CrossingCurve& curve) noexcept {
+  const RegionTriangle& of_a = pair.image_a->region_triangles[triangle_a];
+  const RegionTriangle& of_b = pair.image_b->region_triangles[triangle_b];
+  // Relative to a corner, only the size of the pair is rounded.
+  const Vec3d origin = corner(of_a, 0, pair.scale_a);
+  const Vec3d from_origin = pair.b_in_a.translation - origin;
+  const Mat3d& r = pair.b_in_a.rotation;
+  const Triangle a =
+      triangle({}, corner(of_a, 1, pair.scale_a) - origin, corner(of_a, 2, pair.scale_a) - origin);
+  const Triangle b = triangle(r * corner(of_b, 0, pair.scale_b) + from_origin,
+                              r * corner(of_b, 1, pair.scale_b) + from_origin,
+                              r * corner(of_b, 2, pair.scale_b) + from_origin);
+  const Segment s = common(a, b);
+  if (!(s.length > 0)) return;
+  curve.length += s.length;
+  curve.moment += s.length * (origin + 0.5 * (s.begin + s.end));
+  const bool a_counts = is_closed(*pair.image_a, of_a);
+  const bool b_counts = is_closed(*pair.image_b, of_b);
+  const double share_b = a_counts ? s.share_b : 1;
+  const double share_a = b_counts ? 1 - s.share_b : 1;
+  if (b_counts) curve.out += (s.length * share_b / norm(b.normal)) * b.normal;
+  if (a_counts) curve.out += (-s.length * share_a / norm(a.normal)) * a.normal;
+}
+
+}  // namespace palpate::regions

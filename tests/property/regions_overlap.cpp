@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Overlaps of detailed surfaces: which way they push, and that they do not kick.
+#include <gtest/gtest.h>
+
+#include "tests/support/baked_scene.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace palpate::test {
+namespace {
+
+constexpr double kStiffness_N_per_m = 500;
+
+Settings settings(double delta_m) {
+  return {.engine = EngineKind::regions,
+          .delta_m = delta_m,
+          .exact = true,
+          .stiffness_N_per_m = kStiffness_N_per_m,
+          .cluster_radius_m = delta_m};
+}
+
+BakedBody baked(bake::Mesh mesh, double delta_rel) {
+  bake::BakeOptions options = options_for(bake::ForEngine::regions);
+  options.delta_rel = delta_rel;
+  return {std::move(mesh), options};
+}
+
+/// One ball about another, always in overlap by 0.2 delta.
+struct Slide {
+  Slide(bake::Mesh moved, bake::Mesh fixed, double delta)
+      : delta_m(delta),
+        a(baked(std::move(moved), delta)),
+        b(baked(std::move(fixed), delta)),
+        scene({a.view, b.view}, {{0, 1}}, settings(delta)),
+        wide({a.view, b.view}, {{0, 1}}, settings(2 * delta)) {}
+
+  static Vec3d out_at(double angle) {
+    const Vec3d out{std::sin(angle), 0.2, std::cos(angle)};
+    return (1 / norm(out)) * out;
+  }
+
+  Pose pose_at(double angle) {
+    const Vec3d out = out_at(angle);
+    const double touch = 0.1 * delta_m;
+    double reach = 2.3;
+    Pose pose{reach * out, turn({0.3, 0.2, 0.1})};
+    for (int i = 0; i < 30; ++i) {
+      const Pose poses[2] = {pose, {}};
+      const TickResult r = tick_or_fail(*wide.engine, poses);
+      reach -= (r.contacts.empty() ? 2 * delta_m : r.min_distance_m) - touch;
+      pose.position_m = reach * out;
+    }
+    pose.position_m = (reach - touch - 0.2 * delta_m) * out;
+    return pose;
+  }
+
+  double delta_m;
+  BakedBody a, b;
+  BakedScene scene, wide;
+};
+
+/// Largest change of force from tick to tick over the way of the tool, in stiffnesses.
+double largest_step(Slide& slide, double from, double to) {
+  constexpr double kStep = 1e-4;
+  double largest = 0;
+  Vec3d force_before_N;
+  Vec3d position_before_m;
+  bool first = true;
+  for (double angle = from; angle < to; angle += kStep) {
+    const Pose poses[2] = {slide.pose_at(angle), {}};
+    const TickResult r = tick_or_fail(*slide.scene.engine, poses);
+    EXPECT_LT(r.min_distance_m, 0) << angle;
+    for (const Contact& c : r.contacts) {
+      EXPECT_GT(dot(c.normal, Slide::out_at(angle)), 0) << angle << ": " << c.distance_m;
+    }
+    if (!first) {
+      const double moved_m = norm(poses[0].position_m - position_before_m);
+      const double changed_N = norm(r.wrench.force_N - force_before_N);
+      largest = std::max(largest, changed_N / (kStiffness_N_per_m * moved_m));
+    }
+    first = false;
+    force_before_N = r.wrench.force_N;
+    position_before_m = poses[0].position_m;
+  }
+  return largest;
+}
+
+/// A wall alone would be 1, by the definition of stiffness. Where the deepest piece of an overlap
+/// told the direction, this was 400.
+TEST(RegionsOverlap, force_does_not_kick_where_pieces_are_thinner_than_it_is_deep) {
+  Slide slide(ball(30, 40, 1), bumpy_ball(60, 80, 1), 0.1);
+  EXPECT_LT(largest_step(slide, 0.34, 0.37), 80);
+}
+
+/// Four sides of different slopes, each in a piece of its own; the corner at the origin.
+bake::Mesh crooked_pyramid() {
+  bake::Mesh m;
+  m.points = {{0, 0, 0}, {0.3, 0.1, 0.5}, {0, 0.6, 0.5}, {-0.9, 0, 0.5}, {0, -0.2, 0.5}};
+  m.faces = {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 1, 4}, {1, 2, 3}, {1, 3, 4}};
+  return m;
+}
+
+void expect_pushed_along(const BakedBody& a, const BakedBody& b, Vec3d out) {
+  BakedScene scene({a.view, b.view}, {{0, 1}}, settings(0.02));
+  for (const double depth_m : {-1e-3, -1e-5, 1e-5, 1e-4, 1e-3}) {
+    const Pose poses[2] = {{-depth_m * out, {}}, {{}, {}}};
+    const TickResult r = tick_or_fail(*scene.engine, poses);
+    ASSERT_FALSE(r.contacts.empty());
+    EXPECT_NEAR(r.min_distance_m, -depth_m, 2e-6);
+    for (const Contact& c : r.contacts) {
+      EXPECT_GT(dot(c.normal, out), 0.9999) << depth_m;
+      EXPECT_LT(norm(c.point_a_m), 4e-3) << depth_m;
+      EXPECT_NEAR(norm(c.point_a_m - c.point_b_m), std::abs(c.distance_m), 1e-9);
+    }
+  }
+}
+
+/// Each side sees a part of the curve only, and is pushed as before it crossed.
+TEST(RegionsOverlap, corner_in_a_face_is_pushed_along_its_normal_before_and_after) {
+  const BakedBody corner = baked(crooked_pyramid(), 0.02);
+  bake::Mesh plate;
+  append(plate, box(3, 3, 0.5), 0.1, 0.2, -0.5);
+  const BakedBody face = baked(std::move(plate), 0.02);
+  expect_pushed_along(corner, face, {0, 0, 1});
+  expect_pushed_along(face, corner, {0, 0, -1});
+}
+
+}  // namespace
+}  // namespace palpate::test
