@@ -115,13 +115,16 @@ void cut_back(Work& work) noexcept {
 void start(Work& work) noexcept {
   for (PairState& pair : work.memory.pairs) place(work, pair);
   cut_back(work);
+  std::uint64_t kept = 0;
   for (const std::uint32_t index : work.tree.front()) {
     Node& node = work.tree[index];
     clear(node, kOfThisTick);
     node.report = kNone;
     renew(work, node);
     wait_if_near(work, index);
+    if (work.is_near(node)) kept += node.contact;
   }
+  work.meter.expect_contacts(kept);
 }
 
 void wait_if_near(Work& work, std::uint32_t index) noexcept {
