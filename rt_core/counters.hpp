@@ -29,7 +29,7 @@ struct Counters {
   std::uint64_t culling_queries = 0;  ///< of culling hulls
   std::uint64_t part_queries = 0;     ///< of triangles of open patches
   std::uint64_t iterations = 0;       ///< support pairs found by own and culling queries
-  std::uint64_t warm_queries = 0;     ///< own and culling: answered by the cached simplex at once
+  std::uint64_t warm_queries = 0;     ///< own and culling: answered by one support pair
   std::uint64_t splits = 0;
   // High-water marks of the pools.
   std::uint32_t most_nodes = 0;     ///< of Limits::nodes

@@ -86,16 +86,10 @@ Found find_by_levels(Engine& engine, Meter& meter) noexcept {
           certify(found, found.upper_m, engine.settings.delta_m, largest_unit_m(engine.states))};
 }
 
-bool limited(const Budget& budget) noexcept {
-  const bool in_time =
-      budget.clock_ns != nullptr && budget.deadline_ns != std::numeric_limits<std::uint64_t>::max();
-  return in_time || budget.units != Budget{}.units;
-}
-
-Found find_by_regions(Engine& engine, const Budget& budget, Meter& meter) noexcept {
+Found find_by_regions(Engine& engine, Meter& meter) noexcept {
   const Settings& s = engine.settings;
   regions::Demand demand;
-  demand.limited = limited(budget);
+  demand.limited = meter.limited();
   if (!s.exact && s.stiffness_N_per_m > 0) {
     demand.tolerance_m = s.force_tolerance_N / s.stiffness_N_per_m;
   }
@@ -122,9 +116,8 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
   }
   Meter meter(budget, engine.tail);
   engine.tally.begin_tick();
-  const Found found = settings.engine == EngineKind::levels
-                          ? find_by_levels(engine, meter)
-                          : find_by_regions(engine, budget, meter);
+  const Found found = settings.engine == EngineKind::levels ? find_by_levels(engine, meter)
+                                                            : find_by_regions(engine, meter);
 
   const std::span<Contact> contacts = engine.contacts.first(found.contacts);
   out.contacts = contacts;

@@ -95,6 +95,11 @@ class Meter {
   }
   /// From when the meter was made to begin_tail(); 0 without a clock.
   [[nodiscard]] std::uint64_t refined_ns() const noexcept { return tail_start_ns_ - start_ns_; }
+  /// Can the budget end the tick at all?
+  [[nodiscard]] bool limited() const noexcept {
+    const bool in_time = budget_.clock_ns != nullptr && budget_.deadline_ns != kUnlimited;
+    return in_time || budget_.units != kUnlimited;
+  }
   [[nodiscard]] bool out_of_units() const noexcept { return used_ >= stop_units_; }
   [[nodiscard]] bool out_of_time() const noexcept {
     return budget_.clock_ns != nullptr && now_ns() >= stop_ns_;

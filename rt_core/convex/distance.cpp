@@ -91,12 +91,16 @@ void reduce(Search& search, const Nearest& nearest) noexcept {
   }
 }
 
+bool is_enough(const Enough& enough, double lower, double upper) noexcept {
+  return lower > enough.above || (upper <= enough.below && lower > 0);
+}
+
 /// GJK from the simplex in `search`.
 ///
 /// Its upper bound may not grow by more than rounding. It need not shrink: beside a needle the
 /// direction can still turn where the distance no longer shows it. Cycles end at the cap.
 /// @param on_simplex  upper bound at which the origin counts as lying on the simplex
-void run(const HullPair& pair, double on_simplex, double stop_above, Search& search) noexcept {
+void run(const HullPair& pair, double on_simplex, const Enough& enough, Search& search) noexcept {
   const double unit = extent(pair);
   const double slack = rounding(pair);
   search.end = End::stalled;
@@ -127,7 +131,8 @@ void run(const HullPair& pair, double on_simplex, double stop_above, Search& sea
       search.lower = lower;
       search.normal = normal;
     }
-    if (search.lower > stop_above || upper - search.lower <= kDistanceGap * (unit + upper)) {
+    if (is_enough(enough, search.lower, upper) ||
+        upper - search.lower <= kDistanceGap * (unit + upper)) {
       search.end = End::bounded;
       return;
     }
@@ -200,7 +205,7 @@ bool enclosed_when_shifted(const HullPair& pair, Vec3d by, Search& search,
   for (std::uint32_t i = 0; i < search.simplex.count; ++i) {
     append(again.simplex, difference(moved, search.simplex.a[i], search.simplex.b[i]));
   }
-  run(moved, 0, std::numeric_limits<double>::infinity(), again);
+  run(moved, 0, {}, again);
   search.iterations += again.iterations;
   if (again.end == End::enclosed) {
     enclosing = again.simplex;
@@ -279,8 +284,8 @@ template <std::uint32_t kCount>
 /// kCount points of the cached simplex still carry the nearest one, and the bounds meet.
 /// @param start  where climbs start; where the answer is no, perhaps a better place
 template <std::uint32_t kCount>
-bool still_nearest(const HullPair& pair, const Cache& cache, double stop_above, VertexPair& start,
-                   Distance& out) noexcept {
+bool still_nearest(const HullPair& pair, const Cache& cache, const Enough& enough,
+                   VertexPair& start, Distance& out) noexcept {
   Vec3d on_a[kCount];
   Vec3d points[kCount];
   load<kCount>(pair, cache, on_a, points);
@@ -290,8 +295,9 @@ bool still_nearest(const HullPair& pair, const Cache& cache, double stop_above, 
   const double inverse = 1 / norm(nearest.axis);
   const FarthestPair low = farthest(pair, -nearest.axis, start);
   const double lower = -low.dot * inverse - rounding(pair);
-  out.iterations = 1;
-  const bool bounded = lower > stop_above || upper - lower <= kDistanceGap * (extent(pair) + upper);
+  ++out.iterations;
+  const bool bounded =
+      is_enough(enough, lower, upper) || upper - lower <= kDistanceGap * (extent(pair) + upper);
   if (!bounded || !(lower > 0)) {
     start = low.vertices;
     return false;
@@ -302,26 +308,26 @@ bool still_nearest(const HullPair& pair, const Cache& cache, double stop_above, 
   return true;
 }
 
-bool still_nearest(const HullPair& pair, const Cache& cache, double stop_above, VertexPair& start,
-                   Distance& out) noexcept {
+bool still_nearest(const HullPair& pair, const Cache& cache, const Enough& enough,
+                   VertexPair& start, Distance& out) noexcept {
   switch (cache.count) {
     case 1:
-      return still_nearest<1>(pair, cache, stop_above, start, out);
+      return still_nearest<1>(pair, cache, enough, start, out);
     case 2:
-      return still_nearest<2>(pair, cache, stop_above, start, out);
+      return still_nearest<2>(pair, cache, enough, start, out);
     case 3:
-      return still_nearest<3>(pair, cache, stop_above, start, out);
+      return still_nearest<3>(pair, cache, enough, start, out);
     default:
       return false;
   }
 }
 
-void search_from(const HullPair& pair, VertexPair start, double stop_above, Cache& cache,
+void search_from(const HullPair& pair, VertexPair start, const Enough& enough, Cache& cache,
                  Distance& out) noexcept {
   Search search;
   search.simplex = load(pair, cache);
   search.start = start;
-  run(pair, kOnSimplex * extent(pair), stop_above, search);
+  run(pair, kOnSimplex * extent(pair), enough, search);
   out.state = classify(pair, search);
   out.iterations += search.iterations;
   const Simplex& s = search.simplex;
@@ -342,25 +348,41 @@ void search_from(const HullPair& pair, VertexPair start, double stop_above, Cach
   set_bounds(search.lower, search.normal, out);
 }
 
-}  // namespace
-
-Distance distance(const Hull& a, const Hull& b, const RelativePose& b_in_a, double stop_above,
-                  Cache& cache) noexcept {
-  PALPATE_ASSERT(a.count > 0 && b.count > 0 && stop_above >= 0);
-  const HullPair pair{a, b, b_in_a};
-  Distance out;
-  VertexPair start{cache.a[0], cache.b[0]};
-  if (still_nearest(pair, cache, stop_above, start, out)) return out;
-  search_from(pair, start, stop_above, cache, out);
-  return out;
+/// Starts a cold cache from the support points of a guessed direction. True where these are already
+/// farther apart along it than the caller wants to know.
+bool apart_along(const HullPair& pair, Vec3d guess, const Enough& enough, Cache& cache,
+                 Distance& out) noexcept {
+  const FarthestPair low = farthest(pair, -guess, {});
+  cache.count = 1;
+  cache.a[0] = low.vertices.a;
+  cache.b[0] = low.vertices.b;
+  out.iterations = 1;
+  const double inverse = 1 / norm(guess);
+  const double lower = -low.dot * inverse - rounding(pair);
+  if (!(lower > enough.above)) return false;
+  constexpr double kWhole[1] = {1};
+  Vec3d on_a[1];
+  Vec3d points[1];
+  load<1>(pair, cache, on_a, points);
+  set_witnesses<1>(cache.a, cache.b, points, on_a, kWhole, out);
+  set_bounds(lower, inverse * guess, out);
+  return true;
 }
 
-void seed(const Hull& a, const Hull& b, const RelativePose& b_in_a, Vec3d direction,
-          Cache& cache) noexcept {
-  const DifferencePoint w = support({a, b, b_in_a}, -direction, {});
-  cache.count = 1;
-  cache.a[0] = w.a;
-  cache.b[0] = w.b;
+}  // namespace
+
+Distance distance(const Hull& a, const Hull& b, const RelativePose& b_in_a, const Enough& enough,
+                  Cache& cache, Vec3d guess) noexcept {
+  PALPATE_ASSERT(a.count > 0 && b.count > 0 && enough.above >= 0);
+  const HullPair pair{a, b, b_in_a};
+  Distance out;
+  if (cache.count == 0 && squared_norm(guess) > 0 && apart_along(pair, guess, enough, cache, out)) {
+    return out;
+  }
+  VertexPair start{cache.a[0], cache.b[0]};
+  if (still_nearest(pair, cache, enough, start, out)) return out;
+  search_from(pair, start, enough, cache, out);
+  return out;
 }
 
 }  // namespace palpate::convex

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "rt_core/convex/hull.hpp"
 #include "rt_core/geometry/pose.hpp"
@@ -51,6 +52,13 @@ struct Distance {
   return d.state == State::penetrating || d.state == State::touching;
 }
 
+/// What is enough to know of hulls that are apart. By default the distance itself.
+struct Enough {
+  /// >= 0: that they are farther apart (lower_bound > above)
+  double above = std::numeric_limits<double>::infinity();
+  double below = 0;  ///< that they are not (distance <= below); 0: never
+};
+
 inline constexpr std::uint32_t kMaxDistanceIterations = 64;
 
 // Relative to the sum of the scales.
@@ -68,18 +76,15 @@ inline constexpr double kDistanceAccept = 1e-7;  ///< and which rounding may lea
 /// not enclose it, searches with a shifted by kTouching either way, then by 30 times that, tell
 /// touching from penetrating.
 ///
-/// @param a, b        scales from 1e-30 to 1e30
-/// @param b_in_a      maps scaled coordinates of b to scaled coordinates of a; finite
-/// @param stop_above  >= 0; may return State::separated early once lower_bound > stop_above (the
-///                    witnesses are then only good for a warm start); infinity: exact
-/// Never NaN for finite input. Cost: at most 5 * kMaxDistanceIterations support pairs; one where
-/// warm. No memory. Real-time safe.
+/// @param a, b    scales from 1e-30 to 1e30
+/// @param b_in_a  maps scaled coordinates of b to scaled coordinates of a; finite
+/// @param enough  may return State::separated early; the witnesses are then only good for a warm
+///                start
+/// @param guess   of the direction from b to a, of about unit length, in the coordinates of a:
+///                where a search with a cold cache starts; zero: none
+/// Never NaN for finite input. Cost: at most 5 * kMaxDistanceIterations + 2 support pairs; one
+/// where warm. No memory. Real-time safe.
 [[nodiscard]] Distance distance(const Hull& a, const Hull& b, const RelativePose& b_in_a,
-                                double stop_above, Cache& cache) noexcept;
-
-/// Starts a cold cache from a guess of the separating direction (from b to a, coordinates of a, any
-/// length): the two support points.
-void seed(const Hull& a, const Hull& b, const RelativePose& b_in_a, Vec3d direction,
-          Cache& cache) noexcept;
+                                const Enough& enough, Cache& cache, Vec3d guess = {}) noexcept;
 
 }  // namespace palpate::convex

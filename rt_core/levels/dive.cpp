@@ -96,8 +96,6 @@ class Search {
     node.piece_b = b;
     node.normal = top_.normal;
     begin(pair_, node, -kInfinity);
-    const Vec3d towards_a = vec_cast<double>(node.normal);
-    if (squared_norm(towards_a) > 0) Probe::seed(pair_, node, towards_a);
     return node;
   }
 

@@ -160,7 +160,8 @@ LeafContact nearest_parts(const PairState& pair, const Piece& a, const Piece& b,
       }
       const convex::Hull hull_b = part(parts_b, j, storage_b);
       convex::Cache cold;
-      const convex::Distance d = convex::distance(hull_a, hull_b, pair.b_in_a, best.distance, cold);
+      const convex::Distance d =
+          convex::distance(hull_a, hull_b, pair.b_in_a, {.above = best.distance}, cold);
       ++queries;
       if (convex::overlaps(d)) out_crossing = true;
       if (d.distance >= best.distance) continue;

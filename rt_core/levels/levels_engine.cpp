@@ -56,18 +56,15 @@ void settle(Work& work) noexcept {
   }
 }
 
-QueryResult finish(Work& work) noexcept {
+void finish(Work& work) noexcept {
   work.report.finish(work.result);
   work.result.queries = work.probe.queries();
   work.result.iteration_cap_met |= work.probe.iteration_cap_met();
-  return work.result;
 }
 
-}  // namespace
-
-QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally) noexcept {
-  ++memory.ticks;
-  Work work(memory, rules, meter, tally);
+void run(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally, Pace pace,
+         QueryResult& out) noexcept {
+  Work work(memory, rules, meter, tally, pace);
   hold_back(work);  // where a tick starts depends on what refinement may spend
   start(work);
   meter.release();
@@ -83,8 +80,24 @@ QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& 
   }
   meter.begin_tail();
   settle(work);
-  const QueryResult found = finish(work);
+  finish(work);
+  out = work.result;
   tally.lap(Stage::settle, meter);
+}
+
+}  // namespace
+
+QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally) noexcept {
+  ++memory.ticks;
+  const bool whole = rules.exact && !meter.limited();
+  QueryResult found;
+  run(memory, rules, meter, tally, whole ? Pace::whole : Pace::by_worth, found);
+  if (!whole || !found.truncated_by_memory) return found;
+  // Too little memory for the whole: what is nearest gets it, from the roots on.
+  for (PairState& pair : memory.pairs) pair.fresh = true;
+  const std::uint64_t spent = found.queries;
+  run(memory, rules, meter, tally, Pace::by_worth, found);
+  found.queries += spent;
   return found;
 }
 

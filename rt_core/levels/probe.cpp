@@ -11,6 +11,9 @@ constexpr double kMotionSlack = 1e-9;
 /// A query may stop once the pair is this many ticks of the present motion farther than delta: it
 /// then rests for as long.
 constexpr double kRestTicks = 6;
+/// With Pace::whole also at this share of delta: in fast motion a longer rest saves queries, but
+/// costs more iterations than these would.
+constexpr double kRestShare = 0.2;
 
 /// Rounded towards minus infinity far enough for float.
 float float_below(double v) noexcept { return static_cast<float>(v - 1e-7 * (v < 0 ? -v : v)); }
@@ -76,18 +79,6 @@ void begin(const PairState& pair, Node& node, double inherited) noexcept {
   node.turn_at = pair.turn;
 }
 
-void Probe::seed(const PairState& pair, Node& node, Vec3d towards_a) noexcept {
-  const Piece& a = piece_a(pair, node);
-  const Piece& b = piece_b(pair, node);
-  if (!is_free(a) && !is_free(b)) {
-    convex::seed(hull_of(*pair.image_a, a, pair.scale_a), hull_of(*pair.image_b, b, pair.scale_b),
-                 pair.b_in_a, towards_a, node.own);
-  }
-  convex::seed(culling_hull_of(*pair.image_a, a, pair.scale_a),
-               culling_hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a, towards_a,
-               node.culling);
-}
-
 void Probe::note(const convex::Distance& d) noexcept {
   if (d.state == convex::State::gave_up) capped_ = true;
   tally_.count([&](auto& counters) {
@@ -98,20 +89,26 @@ void Probe::note(const convex::Distance& d) noexcept {
 
 double Probe::rest_margin(const PairState& pair, const Node& node) const noexcept {
   if (!rules_.motion_bounds) return 0;
-  return kRestTicks * (pair.last_travel + pair.last_turn * static_cast<double>(node.reach));
+  const double margin =
+      kRestTicks * (pair.last_travel + pair.last_turn * static_cast<double>(node.reach));
+  const double most = kRestShare * pair.delta;
+  return pace_ == Pace::whole && margin > most ? most : margin;
 }
 
-convex::Distance Probe::cull(const PairState& pair, Node& node) noexcept {
+convex::Distance Probe::cull(const PairState& pair, Node& node, Ask ask) noexcept {
   if (rules_.bounds == Bounds::paper) return own(pair, node);
   charge(1);
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
   const double residual = pair.scale_a * static_cast<double>(a.culling_residual) +
                           pair.scale_b * static_cast<double>(b.culling_residual);
+  const double reach = pair.delta + residual;
   const convex::Distance d =
       convex::distance(culling_hull_of(*pair.image_a, a, pair.scale_a),
                        culling_hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a,
-                       pair.delta + residual + rest_margin(pair, node), node.culling);
+                       {.above = reach + rest_margin(pair, node),
+                        .below = ask == Ask::nearness && pace_ == Pace::whole ? reach : 0},
+                       node.culling, vec_cast<double>(node.normal));
   note(d);
   tally_.count([](auto& counters) { ++counters.culling_queries; });
   if (node.contact == 0 && !overlaps(d)) node.normal = vec_cast<float>(d.normal);
@@ -125,9 +122,9 @@ convex::Distance Probe::own(const PairState& pair, Node& node) noexcept {
   const Piece& b = piece_b(pair, node);
   const double h = pair.scale_a * static_cast<double>(a.hausdorff) +
                    pair.scale_b * static_cast<double>(b.hausdorff);
-  const convex::Distance d = convex::distance(hull_of(*pair.image_a, a, pair.scale_a),
-                                              hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a,
-                                              pair.delta + h + rest_margin(pair, node), node.own);
+  const convex::Distance d = convex::distance(
+      hull_of(*pair.image_a, a, pair.scale_a), hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a,
+      {.above = pair.delta + h + rest_margin(pair, node)}, node.own, vec_cast<double>(node.normal));
   note(d);
   tally_.count([](auto& counters) { ++counters.own_queries; });
   prove(pair, node, overlaps(d) ? overlap_bound(pair, node) : d.lower_bound - h);

@@ -37,22 +37,26 @@ void set_rest(const PairState& pair, Node& node, double rest) noexcept;
 /// First bounds of a node that has none: its spheres, and what its parent is certain of.
 void begin(const PairState& pair, Node& node, double inherited) noexcept;
 
+/// What is asked of culling hulls.
+enum class Ask : std::uint8_t {
+  bound,     ///< how near what they hold can be
+  nearness,  ///< whether that is nearer than delta: the bound of a node that is split matters only
+             ///< where the query may end before its children are measured
+};
+
 /// Does the queries, charges them, and proves the bounds that follow for the original surface.
 class Probe {
  public:
-  Probe(const Rules& rules, Meter& meter, Tally& tally) noexcept
-      : rules_(rules), meter_(meter), tally_(tally) {}
+  Probe(const Rules& rules, Meter& meter, Tally& tally, Pace pace) noexcept
+      : rules_(rules), meter_(meter), tally_(tally), pace_(pace) {}
 
   /// Of the culling hulls, exact up to delta and a little more, so that a node rests for some
   /// ticks. With Bounds::paper of the hulls themselves, widened by h (eq. 5). certain_now() then
   /// has what follows for the original surfaces.
-  convex::Distance cull(const PairState& pair, Node& node) noexcept;
+  convex::Distance cull(const PairState& pair, Node& node, Ask ask = Ask::bound) noexcept;
 
   /// Of the pieces' own hulls, exact up to delta + h + h.
   convex::Distance own(const PairState& pair, Node& node) noexcept;
-
-  /// Starts both kinds of query from a guess of the direction from b to a.
-  static void seed(const PairState& pair, Node& node, Vec3d towards_a) noexcept;
 
   /// Would cull() tell more than own() has?
   [[nodiscard]] bool has_tighter(const PairState& pair, const Node& node) const noexcept {
@@ -79,6 +83,7 @@ class Probe {
   const Rules& rules_;
   Meter& meter_;
   Tally& tally_;
+  Pace pace_;
   std::uint64_t queries_ = 0;
   bool capped_ = false;
 };

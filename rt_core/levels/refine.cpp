@@ -60,12 +60,10 @@ void split(Work& work, std::uint32_t index) noexcept {
     raise_mark(counters.most_nodes, work.tree.used_nodes());
   });
   note_blending(work, index);
-  const Vec3d towards_a = vec_cast<double>(parent.normal);
   for (std::uint32_t c = parent.first_child; c != kNone; c = work.tree[c].next_sibling) {
     Node& child = work.tree[c];
     begin(pair, child, certain_now(pair, parent));
     inherit(pair, parent, child);
-    if (squared_norm(towards_a) > 0) Probe::seed(pair, child, towards_a);
     wait_if_near(work, c);
   }
 }

@@ -2,6 +2,8 @@
 // Sensation preserving selective refinement (Sec. 5.4): which detail can be felt.
 #pragma once
 
+#include <cstdint>
+
 #include "rt_core/convex/distance.hpp"
 #include "rt_core/levels/body_pair.hpp"
 #include "rt_core/palpate_rt.hpp"
@@ -21,6 +23,14 @@ struct Rules {
   Order order = Order::deviation;
   double s0 = 0;
   double kappa = 0;  ///< infinity: no such rule
+};
+
+/// How a query is worked off. What it finds, if nothing ends it, does not depend on it.
+enum class Pace : std::uint8_t {
+  by_worth,  ///< it may end at any moment: what matters most comes first, with tight bounds on the
+             ///< way
+  whole,     ///< nothing ends it before it is exact: in the order, and with the bounds, that cost
+             ///< least
 };
 
 /// Detail that a pair of pieces leaves out.

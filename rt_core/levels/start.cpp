@@ -14,6 +14,8 @@ constexpr double kSphereRounding = 1e-9;
 /// The front may be this much larger than what the budget is expected to measure: the estimate
 /// wavers, and a front that is cut back every other tick would be felt.
 constexpr double kFrontOverBudget = 1.25;
+/// The front's nodes lie anywhere in the pool: this many are on their way from memory.
+constexpr std::size_t kAhead = 8;
 
 bool jumped(const PairState& pair) noexcept {
   const double moved = pair.last_travel + pair.last_turn;
@@ -116,7 +118,10 @@ void start(Work& work) noexcept {
   for (PairState& pair : work.memory.pairs) place(work, pair);
   cut_back(work);
   std::uint64_t kept = 0;
-  for (const std::uint32_t index : work.tree.front()) {
+  const std::span<const std::uint32_t> front = work.tree.front();
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    if (i + kAhead < front.size()) __builtin_prefetch(&work.tree[front[i + kAhead]], 1);
+    const std::uint32_t index = front[i];
     Node& node = work.tree[index];
     clear(node, kOfThisTick);
     node.report = kNone;

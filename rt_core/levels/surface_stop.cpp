@@ -107,10 +107,10 @@ bool may_stop_on_surface(const Work& work, const Node& node) noexcept {
 
 SurfaceStop probe_surface(Work& work, Node& node) noexcept {
   const PairState& pair = work.pair_of(node);
-  const convex::Distance d = work.probe.cull(pair, node);
+  const bool may_stop = may_stop_on_surface(work, node);
+  const convex::Distance d = work.probe.cull(pair, node, may_stop ? Ask::bound : Ask::nearness);
   SurfaceStop out;
-  if (!may_stop_on_surface(work, node) || d.state != convex::State::separated ||
-      d.distance >= pair.delta) {
+  if (!may_stop || d.state != convex::State::separated || d.distance >= pair.delta) {
     return out;
   }
   const Piece& a = piece_a(pair, node);

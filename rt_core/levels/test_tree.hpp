@@ -2,6 +2,7 @@
 // The bounding volume test tree of Sec. 5.2, kept from tick to tick: its leaves are the front.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -23,8 +24,8 @@ inline constexpr std::uint8_t kOfThisTick = kMeasured | kStopped | kRefineA | kR
 
 /// A pair of pieces and what is known of their distance. Lengths are in the unit of the body pair.
 struct alignas(64) Node {
-  // What the scan of the front reads: one cache line. Both bounds were proved when the body pair's
-  // odometers stood at travel_at and turn_at, and shrink by the motion since.
+  // What the scan of the front reads and writes: one cache line. Both bounds were proved when the
+  // body pair's odometers stood at travel_at and turn_at, and shrink by the motion since.
   double travel_at = 0;
   double turn_at = 0;
   float rest = 0;     ///< while this is delta or more, the node need not be looked at: neither its
@@ -43,6 +44,8 @@ struct alignas(64) Node {
   std::uint32_t next_sibling = kNone;   ///< also links the free list
   std::uint32_t front_slot = kNone;     ///< place in the front; kNone inside the tree
   std::uint32_t blending_slot = kNone;  ///< place among the blending nodes; kNone for others
+  std::uint32_t report = kNone;  ///< its contact of this tick; inside the tree: the last tick in
+                                 ///< which it was mixed
   // Of the last query.
   Vec3f witness_a{};  ///< of the contact, in the coordinates of a
   Vec3f witness_b{};  ///< in the coordinates of b
@@ -51,8 +54,6 @@ struct alignas(64) Node {
   float slack = 0;    ///< the original surfaces are at most this farther apart than the witnesses
   float s_star = 0;   ///< eq. 7; an ancestor's until the node is measured
   float excess = 0;   ///< Detail::excess
-  std::uint32_t report = kNone;  ///< its contact of this tick; inside the tree: the last tick in
-                                 ///< which it was mixed
   /// Whose contact is kept, where a dive found it (dive.hpp); else kNone
   std::uint32_t leaf_a = kNone;
   std::uint32_t leaf_b = kNone;
@@ -60,7 +61,7 @@ struct alignas(64) Node {
   convex::Cache own;      ///< of the pieces' hulls
   convex::Cache culling;  ///< of their culling hulls
 };
-static_assert(sizeof(Node) == 192);
+static_assert(offsetof(Node, witness_a) == 64 && sizeof(Node) == 192);
 
 inline void set(Node& node, std::uint8_t flags) noexcept {
   node.flags = static_cast<std::uint8_t>(node.flags | flags);

@@ -2,9 +2,13 @@
 // The one queue of a query, over all pairs of bodies: what waits to be measured or split.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/queue.hpp"
+#include "rt_core/levels/rules.hpp"
 
 namespace palpate::levels {
 
@@ -25,6 +29,43 @@ struct Earlier {
   }
 };
 
-using WaitQueue = MinQueue<Waiting, Earlier>;
+/// Earliest first; where a query is worked off to its end (Pace::whole) last first: a push or pop
+/// is then O(1), and what lies together in memory is worked off together.
+class WaitQueue {
+ public:
+  WaitQueue(std::span<Waiting> storage, Pace pace) noexcept
+      : storage_(storage), heap_(storage), pace_(pace) {}
+
+  [[nodiscard]] bool empty() const noexcept { return items().empty(); }
+  [[nodiscard]] std::span<const Waiting> items() const noexcept {
+    return is_heap() ? heap_.items() : storage_.first(stacked_);
+  }
+  [[nodiscard]] const Waiting& top() const noexcept {
+    return is_heap() ? heap_.top() : storage_[stacked_ - 1];
+  }
+
+  void push(const Waiting& item) noexcept {
+    if (is_heap()) return heap_.push(item);
+    PALPATE_ASSERT(stacked_ < storage_.size());
+    storage_[stacked_++] = item;
+  }
+  void pop() noexcept {
+    if (is_heap()) return heap_.pop();
+    PALPATE_ASSERT(stacked_ > 0);
+    --stacked_;
+  }
+  void clear() noexcept {
+    heap_.clear();
+    stacked_ = 0;
+  }
+
+ private:
+  [[nodiscard]] bool is_heap() const noexcept { return pace_ == Pace::by_worth; }
+
+  std::span<Waiting> storage_;
+  MinQueue<Waiting, Earlier> heap_;
+  std::size_t stacked_ = 0;
+  Pace pace_;
+};
 
 }  // namespace palpate::levels

@@ -11,7 +11,7 @@ bool Work::only_culls(const Node& node) const noexcept {
 bool Work::rests(Node& node) noexcept {
   const PairState& pair = pair_of(node);
   if (!only_culls(node)) return rests_apart(node, probe.own(pair, node));
-  static_cast<void>(probe.cull(pair, node));
+  static_cast<void>(probe.cull(pair, node, Ask::nearness));
   set_rest(pair, node, certain_now(pair, node));
   return !is_near(node);
 }

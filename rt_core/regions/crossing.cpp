@@ -14,7 +14,7 @@ Crossing crossing_of(const levels::PairState& pair, std::uint32_t piece_a, std::
   const convex::Hull b =
       levels::hull_of(*pair.image_b, pair.image_b->pieces[piece_b], pair.scale_b);
   convex::Cache cache;
-  const convex::Distance apart = convex::distance(a, b, pair.b_in_a, 0, cache);
+  const convex::Distance apart = convex::distance(a, b, pair.b_in_a, {.above = 0}, cache);
   if (apart.state == convex::State::separated) {  // by rounding: they touch
     out.depth = 0;
     out.point_a = apart.point_a;

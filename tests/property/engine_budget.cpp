@@ -67,6 +67,20 @@ TEST(EngineBudget, few_nodes_are_a_reported_graceful_stop) {
   }
 }
 
+TEST(EngineBudget, few_nodes_without_a_budget_go_to_what_is_nearest) {
+  for (const std::uint32_t nodes : {2u, 10u, 100u}) {
+    BakedScene one({bodies().a.view, bodies().b.view}, {{0, 1}}, kSettings, {.nodes = nodes});
+    BakedScene other({bodies().a.view, bodies().b.view}, {{0, 1}}, kSettings, {.nodes = nodes});
+    const Pose poses[2] = {slide(0), {}};
+    const TickResult r = tick_or_fail(*one.engine, poses);
+    const TickResult s = tick_or_fail(*other.engine, poses, {.units = 1000000});
+    EXPECT_TRUE(r.certificate.truncated_by_memory);
+    EXPECT_EQ(r.contacts.size(), s.contacts.size());
+    EXPECT_EQ(r.certificate.error_bound_m, s.certificate.error_bound_m);
+    EXPECT_NEAR(norm(r.wrench.force_N - s.wrench.force_N), 0, 1e-12);
+  }
+}
+
 TEST(EngineBudget, few_contacts_are_a_reported_graceful_stop) {
   BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, kSettings, {.contacts = 1});
   const PlacedTriangles fixed(bodies().b.mesh, {});

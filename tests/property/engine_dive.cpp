@@ -98,7 +98,8 @@ TEST(EngineDive, exact_query_that_ends_in_time_is_not_changed) {
   const std::vector<Answer> unlimited = run(bodies().a.view, exact());
   for (std::size_t i = 0; i < unlimited.size(); ++i) {
     EXPECT_EQ(limited[i].contacts, unlimited[i].contacts);
-    EXPECT_EQ(norm(limited[i].force_N - unlimited[i].force_N), 0);
+    // The same contacts, in another order: the sum is rounded otherwise.
+    EXPECT_NEAR(norm(limited[i].force_N - unlimited[i].force_N), 0, 1e-12);
   }
 }
 

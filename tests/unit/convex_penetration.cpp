@@ -13,8 +13,6 @@
 namespace palpate::convex::test {
 namespace {
 
-constexpr double kExact = std::numeric_limits<double>::infinity();
-
 struct Answer {
   Distance distance;
   Penetration penetration;
@@ -77,8 +75,8 @@ std::vector<Vec3d> differences(const std::vector<Vec3d>& points) {
 }
 
 double overlap_along(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b, Vec3d normal) {
-  double lowest_a = kExact;
-  double highest_b = -kExact;
+  double lowest_a = std::numeric_limits<double>::infinity();
+  double highest_b = -std::numeric_limits<double>::infinity();
   for (const Vec3d& p : a) lowest_a = std::min(lowest_a, dot(p, normal));
   for (const Vec3d& p : b) highest_b = std::max(highest_b, dot(p, normal));
   return highest_b - lowest_a;
@@ -92,7 +90,7 @@ double least_overlap(const Hull& ha, const Hull& hb, const RelativePose& pose) {
   std::vector<Vec3d> edges = differences(a);
   const std::vector<Vec3d> more = differences(b);
   edges.insert(edges.end(), more.begin(), more.end());
-  double least = kExact;
+  double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < edges.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       const Vec3d n = cross(edges[i], edges[k]);

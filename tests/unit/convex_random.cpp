@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string>
 
@@ -12,8 +11,6 @@
 
 namespace palpate::convex::test {
 namespace {
-
-constexpr double kExact = std::numeric_limits<double>::infinity();
 
 /// The long run defines more.
 #ifndef PALPATE_CONVEX_QUERIES
@@ -166,7 +163,7 @@ TEST(Distance, coherent_motion_warm_agrees_with_cold) {
   EXPECT_LT(static_cast<double>(iterations), 2.0 * queries);
 }
 
-TEST(Distance, stop_above_never_stops_a_nearer_pair) {
+TEST(Distance, enough_above_never_stops_a_nearer_pair) {
   Random random(7);
   const std::vector<Shape> pool = shape_pool(60, random);
   for (int i = 0; i < kQueries / 10; ++i) {
@@ -177,7 +174,7 @@ TEST(Distance, stop_above_never_stops_a_nearer_pair) {
     const Distance exact = distance(a, b, pose, kExact, cache);
     const double limit = uniform(random, 0, 1);
     Cache cold;
-    const Distance early = distance(a, b, pose, limit, cold);
+    const Distance early = distance(a, b, pose, {.above = limit}, cold);
     ASSERT_LE(early.lower_bound, exact.distance + 1e-12);
     if (exact.distance < limit) {
       ASSERT_NEAR(early.distance, exact.distance, 3e-9);
@@ -185,6 +182,43 @@ TEST(Distance, stop_above_never_stops_a_nearer_pair) {
     if (exact.lower_bound > limit) {
       ASSERT_GT(early.lower_bound, limit);
     }
+  }
+}
+
+TEST(Distance, enough_below_never_stops_a_farther_pair) {
+  Random random(8);
+  const std::vector<Shape> pool = shape_pool(60, random);
+  for (int i = 0; i < kQueries / 10; ++i) {
+    const Hull a = pool[random() % pool.size()].hull();
+    const Hull b = pool[random() % pool.size()].hull();
+    const RelativePose pose = random_pose(random, 1.5);
+    Cache cache;
+    const Distance exact = distance(a, b, pose, kExact, cache);
+    const double limit = uniform(random, 0, 1);
+    Cache cold;
+    const Distance early = distance(a, b, pose, {.below = limit}, cold);
+    ASSERT_EQ(overlaps(early), overlaps(exact));
+    ASSERT_LE(early.lower_bound, exact.distance + 1e-12);
+    ASSERT_GE(early.distance, exact.lower_bound - 1e-12);
+    if (exact.lower_bound > limit) {
+      ASSERT_NEAR(early.distance, exact.distance, 3e-9);
+    }
+  }
+}
+
+TEST(Distance, guess_in_any_direction_changes_no_distance) {
+  Random random(9);
+  const std::vector<Shape> pool = shape_pool(60, random);
+  for (int i = 0; i < kQueries / 10; ++i) {
+    const Hull a = pool[random() % pool.size()].hull();
+    const Hull b = pool[random() % pool.size()].hull();
+    const RelativePose pose = random_pose(random, 1.5);
+    Cache cache;
+    const Distance exact = distance(a, b, pose, kExact, cache);
+    Cache cold;
+    const Distance guessed = distance(a, b, pose, kExact, cold, random_unit(random));
+    ASSERT_EQ(overlaps(guessed), overlaps(exact));
+    ASSERT_NEAR(guessed.distance, exact.distance, 3e-9);
   }
 }
 

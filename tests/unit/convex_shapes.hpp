@@ -16,6 +16,8 @@ namespace palpate::convex::test {
 
 using Random = std::mt19937_64;
 
+inline constexpr Enough kExact{};
+
 /// A hull that owns its memory.
 struct Shape {
   std::vector<image::Vertex> vertices;

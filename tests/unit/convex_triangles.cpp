@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "convex_shapes.hpp"
 #include "rt_core/convex/support.hpp"
@@ -105,8 +104,7 @@ TEST(Triangles, random_ones_agree_with_hulls) {
     const TriangleDistance d = triangle_distance(a.corners, b.corners);
     expect_attained(a.corners, b.corners, d);
     Cache cache;
-    const Distance h = distance(a.shape.hull(), b.shape.hull(), {},
-                                std::numeric_limits<double>::infinity(), cache);
+    const Distance h = distance(a.shape.hull(), b.shape.hull(), {}, kExact, cache);
     ASSERT_LE(h.lower_bound, d.distance + 1e-14);
     ASSERT_LE(d.distance, h.distance + 2e-9);
     crossing += d.distance == 0 ? 1 : 0;

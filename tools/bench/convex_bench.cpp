@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -72,8 +71,7 @@ void measure_palpate(benchmark::State& state, const Case& what) {
       convex::Cache cache;
       std::uint64_t last = read_ticks();
       for (const RelativePose& pose : motion.poses) {
-        answers[query] =
-            convex::distance(a, b, pose, std::numeric_limits<double>::infinity(), cache);
+        answers[query] = convex::distance(a, b, pose, {}, cache);
         last = times.add(query++, last);
       }
     }
@@ -118,8 +116,7 @@ void measure_fcl(benchmark::State& state, const Case& what) {
     const Motion& motion = motions[i / kSteps];
     convex::Cache cold;
     const convex::Distance truth =
-        convex::distance(motion.a.baked(), motion.b.baked(), motion.poses[i % kSteps],
-                         std::numeric_limits<double>::infinity(), cold);
+        convex::distance(motion.a.baked(), motion.b.baked(), motion.poses[i % kSteps], {}, cold);
     worst = std::max(worst, std::abs(answers[i].distance - truth.distance));
   }
   state.counters["worst_error"] = worst;

@@ -19,7 +19,6 @@ using Random = std::mt19937_64;
 constexpr double kStep = 0.001;  // of the radius, which is 1
 constexpr double kTurn_rad = 0.2 * std::numbers::pi / 180;
 constexpr std::uint32_t kLegSteps = 50;  // poses between changes of course
-constexpr double kExact = std::numeric_limits<double>::infinity();
 
 double uniform(Random& random, double low, double high) {
   return low + (high - low) * (static_cast<double>(random() >> 11) * 0x1p-53);
@@ -74,7 +73,7 @@ BenchHull make_hull(std::uint32_t vertices, Random& random) {
 
 convex::Distance exact_distance(const Motion& motion, const RelativePose& pose) {
   convex::Cache cold;
-  return convex::distance(motion.a.baked(), motion.b.baked(), pose, kExact, cold);
+  return convex::distance(motion.a.baked(), motion.b.baked(), pose, {}, cold);
 }
 
 /// A random pose with the hulls `gap` apart.
