@@ -69,6 +69,9 @@ struct Capabilities {
   std::uint8_t sensed_dof = 6;    ///< 3: position only, 6: position and orientation
   std::uint8_t rendered_dof = 6;  ///< 3: force only, 6: force and torque
   bool senses_twist = false;
+
+  [[nodiscard]] bool senses_orientation() const noexcept { return sensed_dof > 3; }
+  [[nodiscard]] bool renders_torque() const noexcept { return rendered_dof > 3; }
 };
 
 /// Why a device could not be used: in which phase, the likely cause, and the mend.

@@ -49,13 +49,6 @@ double largest_unit_m(std::span<const levels::PairState> pairs) noexcept {
   return unit;
 }
 
-/// Follows the tail within a few ticks; one that was interrupted by the host counts for little.
-std::uint64_t smoothed(std::uint64_t before_ns, std::uint64_t now_ns) noexcept {
-  constexpr std::uint64_t kLeast_ns = 1000;
-  const std::uint64_t most = 4 * before_ns + kLeast_ns;
-  return (3 * before_ns + (now_ns < most ? now_ns : most)) / 4;
-}
-
 /// What both queries say of their answer.
 template <class QueryResult>
 Certificate certify(const QueryResult& found, double upper_m, double delta_m,
@@ -87,7 +80,7 @@ Found find_by_levels(Engine& engine, Meter& meter) noexcept {
   const levels::QueryResult found =
       levels::query(engine.levels, rules_of(engine.settings), meter, engine.tally);
   if (found.queries > 0) {
-    engine.levels.query_ns = smoothed(engine.levels.query_ns, meter.refined_ns() / found.queries);
+    follow(engine.levels.query_ns, meter.refined_ns() / found.queries);
   }
   return {found.contacts, found.min_distance_m, engine.levels.tree.front().size(), found.queries,
           certify(found, found.upper_m, engine.settings.delta_m, largest_unit_m(engine.states))};
@@ -121,7 +114,7 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
     pair.delta = settings.delta_m / pair.unit_m;
     levels::move(pair, engine.poses[pair.body_a], engine.poses[pair.body_b]);
   }
-  Meter meter(budget, engine.tail_ns + engine.tail_ns / 4);
+  Meter meter(budget, engine.tail);
   engine.tally.begin_tick();
   const Found found = settings.engine == EngineKind::levels ? find_by_levels(engine, meter)
                                                             : find_by_regions(engine, meter);
@@ -140,7 +133,7 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
   out.certificate = found.certificate;
   out.certificate.units_used = meter.used();
   out.certificate.truncated_by_memory |= penalty.places_full;
-  engine.tail_ns = smoothed(engine.tail_ns, meter.tail_ns());
+  engine.tail.learn(meter.tail_ns(), found.contacts);
   engine.tally.lap(Stage::force, meter);
   engine.tally.count([&](auto& counters) { raise_mark(counters.most_contacts, found.contacts); });
   return Status::ok;

@@ -27,7 +27,7 @@ class Engine {
   std::span<Contact> contacts;
   force::Workspace force;
   [[no_unique_address]] Tally tally;
-  std::uint64_t tail_ns = 0;  // what ticks take from the end of refinement to their own, smoothed
+  TailTime tail;  // of the ticks so far
 };
 
 }  // namespace palpate

@@ -10,9 +10,6 @@
 namespace palpate::hal::mock {
 namespace {
 
-constexpr std::uint8_t kPositionOnly = 3;
-constexpr std::uint8_t kForceOnly = 3;
-
 bool is_finite(const Vec3d& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -27,7 +24,7 @@ Vec3d limited(Vec3d v, double max_length) {
 
 MockDevice::MockDevice(HandParameters hand, const Options& options)
     : options_(options), parameters_(std::move(hand)) {
-  if (options_.rendered_dof <= kForceOnly) options_.max_torque_Nm = 0;
+  if (!capabilities().renders_torque()) options_.max_torque_Nm = 0;
 }
 
 MockDevice::~MockDevice() { stop(); }
@@ -115,7 +112,7 @@ void MockDevice::publish(std::uint64_t time_ns) noexcept {
     state.pose = hand_->pose();
     state.twist = hand_->twist();
   }
-  if (options_.sensed_dof <= kPositionOnly) {
+  if (!capabilities().senses_orientation()) {
     state.pose.orientation = {};
     state.twist.angular_rad_per_s = {};
   }

@@ -9,18 +9,48 @@
 
 namespace palpate {
 
+/// Brings a time nearer to what it was this tick, within a few ticks; one that was interrupted by
+/// the host counts for little.
+inline void follow(std::uint64_t& time_ns, std::uint64_t now_ns) noexcept {
+  constexpr std::uint64_t kLeast_ns = 1000;
+  const std::uint64_t most = 4 * time_ns + kLeast_ns;
+  time_ns = (3 * time_ns + (now_ns < most ? now_ns : most)) / 4;
+}
+
+/// How long the tail of a tick takes for each of its contacts, learnt from ticks.
+class TailTime {
+ public:
+  /// Of a whole tail; a quarter more than it took, since it wavers. 0: nothing learnt yet.
+  [[nodiscard]] std::uint64_t expected_ns(std::uint64_t contacts) const noexcept {
+    return contact_ns_ * (contacts + kFixed) * 5 / 4;
+  }
+  void learn(std::uint64_t tail_ns, std::uint64_t contacts) noexcept {
+    follow(contact_ns_, tail_ns / (contacts + kFixed));
+  }
+
+ private:
+  static constexpr std::uint64_t kFixed = 4;  ///< what a tail takes beside, in contacts
+  std::uint64_t contact_ns_ = 0;
+};
+
 /// The clock is read before every query: it is handed in and cheap (a cycle counter, a vDSO call).
-/// Refinement has to end early enough for what follows it (clusters, forces): the reserve, at most
-/// half of what there is.
+/// Refinement has to end early enough for what follows it (clusters, forces): the tail, whose time
+/// grows with the contacts. It is left at most half of what there is.
 class Meter {
  public:
-  Meter(const Budget& budget, std::uint64_t reserve_ns) noexcept : budget_(budget) {
+  Meter(const Budget& budget, const TailTime& tail) noexcept : budget_(budget), tail_(tail) {
     stop_units_ = budget.units;
     if (budget.clock_ns == nullptr) return;
     start_ns_ = tail_start_ns_ = now_ns();
-    const std::uint64_t half =
-        budget.deadline_ns > start_ns_ ? (budget.deadline_ns - start_ns_) / 2 : 0;
-    stop_ns_ = end_ns_ = budget.deadline_ns - (reserve_ns < half ? reserve_ns : half);
+    stop_ns_ = budget.deadline_ns;
+    leave_for_tail(0);
+  }
+
+  /// So many contacts there are or will be; fewer than before change nothing.
+  void expect_contacts(std::uint64_t contacts) noexcept {
+    if (contacts <= contacts_) return;
+    contacts_ = contacts;
+    if (budget_.clock_ns != nullptr) leave_for_tail(contacts);
   }
 
   void charge(std::uint64_t units) noexcept { used_ += units; }
@@ -87,11 +117,21 @@ class Meter {
  private:
   static constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
 
+  void leave_for_tail(std::uint64_t contacts) noexcept {
+    const std::uint64_t half =
+        budget_.deadline_ns > start_ns_ ? (budget_.deadline_ns - start_ns_) / 2 : 0;
+    const std::uint64_t tail_ns = tail_.expected_ns(contacts);
+    end_ns_ = budget_.deadline_ns - (tail_ns < half ? tail_ns : half);
+    if (stop_ns_ > end_ns_) stop_ns_ = end_ns_;
+  }
+
   [[nodiscard]] std::uint64_t now_ns() const noexcept {
     return budget_.clock_ns(budget_.clock_context);
   }
 
   Budget budget_;
+  TailTime tail_;
+  std::uint64_t contacts_ = 0;  ///< expected
   std::uint64_t used_ = 0;
   std::uint64_t start_ns_ = 0;
   std::uint64_t stop_units_ = 0;  ///< where the budget ends, or what is held back begins

@@ -117,6 +117,7 @@ void cut_back(Work& work) noexcept {
 void start(Work& work) noexcept {
   for (PairState& pair : work.memory.pairs) place(work, pair);
   cut_back(work);
+  std::uint64_t kept = 0;
   const std::span<const std::uint32_t> front = work.tree.front();
   for (std::size_t i = 0; i < front.size(); ++i) {
     if (i + kAhead < front.size()) __builtin_prefetch(&work.tree[front[i + kAhead]], 1);
@@ -126,7 +127,9 @@ void start(Work& work) noexcept {
     node.report = kNone;
     renew(work, node);
     wait_if_near(work, index);
+    if (work.is_near(node)) kept += node.contact;
   }
+  work.meter.expect_contacts(kept);
 }
 
 void wait_if_near(Work& work, std::uint32_t index) noexcept {

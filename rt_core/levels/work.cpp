@@ -69,7 +69,7 @@ void Work::add_contact(Node& node, const LeafContact& contact) noexcept {
   const PairState& pair = pair_of(node);
   if (contact.distance >= pair.delta) return;
   if (node.report != kNone) return report.replace(pair, node, contact);
-  if (report.add(pair, node, contact)) return;
+  if (report.add(pair, node, contact)) return meter.expect_contacts(report.count());
   result.truncated_by_memory = true;
   leave_unresolved(certain_m(node), node);
 }

@@ -205,6 +205,10 @@ class Query {
     return witness.known() && witness.distance < delta ? witness.distance : delta;
   }
 
+  bool is_felt(const Active& item) noexcept {
+    return upper_of(item) < static_cast<float>(pair_of(item).delta);
+  }
+
   void widen(Active& item) noexcept {
     const float upper = upper_of(item);
     item.width = upper > item.rest ? upper - (item.rest > 0 ? item.rest : 0) : 0;
@@ -257,9 +261,7 @@ class Query {
 
   bool is_near(std::uint32_t index) noexcept {
     for (const Active& item : active()) {
-      if (item.pair == index && upper_of(item) < static_cast<float>(pair_of(item).delta)) {
-        return true;
-      }
+      if (item.pair == index && is_felt(item)) return true;
     }
     return false;
   }
@@ -287,10 +289,13 @@ class Query {
   void refine_widest_first() noexcept {
     MinQueue<std::uint32_t, Wider> queue(memory_.queue, Wider{active()});
     double open_m = 0;
+    std::uint64_t felt = 0;
     for (std::uint32_t i = 0; i < count_; ++i) {
       open_m += width_m(active()[i]);
+      felt += is_felt(active()[i]) ? 1u : 0u;
       queue.push(i);
     }
+    meter_.expect_contacts(felt);
     const double share_m = count_ > 0 ? demand_.tolerance_m / count_ : 0;
     while (!queue.empty() && open_m > demand_.tolerance_m) {
       const std::uint32_t index = queue.top();
@@ -298,7 +303,9 @@ class Query {
       Active& item = active()[index];
       if (item.width <= kClosed) break;
       open_m -= width_m(item);
+      const bool felt_before = is_felt(item);
       narrow(item, share_of(item, share_m));
+      if (!felt_before && is_felt(item)) meter_.expect_contacts(++felt);
       open_m += width_m(item);
       if (truncated_) return;
       queue.push(index);

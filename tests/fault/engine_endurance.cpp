@@ -30,15 +30,18 @@ Pose mixed(int i) {
           turn({0.0003 * (i % 20000), 0.0001 * (i % 20000), 0})};
 }
 
-TEST(EngineEndurance, mixed_ticks_allocate_nothing_fault_nothing_and_stay_in_their_memory) {
-  const BakedBody a(bumpy_ball(14, 20, 1));
-  const BakedBody b(bumpy_ball(16, 16, 0.8));
-  const Settings settings{.delta_m = 0.05, .s0 = 0.01, .cluster_radius_m = 0.1};
+class EngineEndurance : public testing::TestWithParam<EngineKind> {};
+
+TEST_P(EngineEndurance, mixed_ticks_allocate_nothing_fault_nothing_and_stay_in_their_memory) {
+  const BakedBody a(bumpy_ball(14, 20, 1), bake::ForEngine::both);
+  const BakedBody b(bumpy_ball(16, 16, 0.8), bake::ForEngine::both);
+  const Settings settings{
+      .engine = GetParam(), .delta_m = 0.05, .s0 = 0.01, .cluster_radius_m = 0.1};
   const Limits limits{.nodes = 1u << 13, .contacts = 1u << 9, .clusters = 1u << 8};
   BakedScene scene({a.view, b.view}, {{0, 1}}, settings, limits);
   constexpr std::size_t kGuard = 4096;
   constexpr unsigned char kMark = 0xa5;
-  const std::size_t bytes = required_bytes(scene.scene(), limits);
+  const std::size_t bytes = required_bytes(scene.scene(), limits, settings.engine);
   const AlignedBytes memory(kGuard + bytes + kGuard);
   std::memset(memory.data.get(), kMark, memory.size);
   ASSERT_EQ(
@@ -52,6 +55,12 @@ TEST(EngineEndurance, mixed_ticks_allocate_nothing_fault_nothing_and_stay_in_the
     ASSERT_EQ(memory.span()[kGuard + bytes + i], std::byte{kMark});
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(engines, EngineEndurance,
+                         testing::Values(EngineKind::levels, EngineKind::regions),
+                         [](const testing::TestParamInfo<EngineKind>& kind) {
+                           return kind.param == EngineKind::levels ? "levels" : "regions";
+                         });
 
 }  // namespace
 }  // namespace palpate::test

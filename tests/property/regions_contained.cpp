@@ -118,7 +118,7 @@ TEST(RegionsContained, side_of_a_point_is_that_of_the_shape) {
     const Vec3d p{coordinate(rng), coordinate(rng), coordinate(rng)};
     const double distance = norm(radius * p + Vec3d{centre[0], centre[1], centre[2]});
     if (distance > 0.7 && distance < 1.3) continue;  // the bumps are here
-    Meter meter({}, 0);
+    Meter meter({}, {});
     regions::Pace pace(meter);
     const regions::Side side =
         regions::side_of(regions::best_kernels(), body.view, p, *scratch, pace);

@@ -144,7 +144,7 @@ TEST(RegionSearch, bounds_hold_wherever_the_budget_ends_it) {
     const double d = truth[region];
     for (const float margin : {0.0f, -0.01f, 0.01f, -0.1f, -0.3f}) {
       for (const std::uint64_t units : {0u, 1u, 3u, 9u, 20u, 50u, 100000u}) {
-        Meter meter({.units = units}, 0);
+        Meter meter({.units = units}, {});
         regions::Pace pace(meter);
         const regions::Bounds found = regions::search(
             regions::best_kernels(), at.frame, *at.scratch, pace, region, {}, {0.5f, margin});
@@ -172,7 +172,7 @@ TEST(RegionSearch, pairs_that_are_not_kept_are_beyond_rest) {
   const auto& triangles = bodies().a.view.region_triangles;
   const auto& others = bodies().b.view.region_triangles;
   for (const std::uint32_t region : {2u, 7u, 11u}) {
-    Meter meter({}, 0);
+    Meter meter({}, {});
     regions::Pace pace(meter);
     const regions::Bounds found = regions::search(regions::best_kernels(), at.frame, *at.scratch,
                                                   pace, region, {}, {2.0f, 0.02f});
@@ -228,7 +228,7 @@ TEST(RegionSweep, bounds_all_regions_from_below_wherever_the_budget_ends_it) {
   const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
   std::vector<float> swept(truth.size());
   for (const std::uint64_t units : {0u, 5u, 50u, 100000u}) {
-    Meter meter({.units = units}, 0);
+    Meter meter({.units = units}, {});
     regions::Pace pace(meter);
     regions::sweep(regions::best_kernels(), at.frame, *at.scratch, pace, 0.1f, swept);
     int told_apart = 0;
@@ -246,7 +246,7 @@ TEST(RegionSweep, bounds_all_regions_from_below_wherever_the_budget_ends_it) {
 TEST(RegionSearch, first_pair_and_climb_are_of_the_region_and_its_bound_holds) {
   SearchedPair at(kNear);
   const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
-  Meter meter({}, 0);
+  Meter meter({}, {});
   regions::Pace pace(meter);
   constexpr float kReach = 0.1f;
   int near = 0;

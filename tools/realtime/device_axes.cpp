@@ -4,22 +4,16 @@
 #include <algorithm>
 
 namespace palpate::realtime {
-namespace {
-
-constexpr std::uint8_t kPositionOnly = 3;
-constexpr std::uint8_t kForceOnly = 3;
-
-}  // namespace
 
 void fit_to(const hal::Capabilities& device, const Quat& orientation, LoopSettings& settings) {
   SafetySettings& safety = settings.safety;
   safety.max_force_N = std::min(safety.max_force_N, device.max_force_N);
   safety.max_torque_Nm = std::min(safety.max_torque_Nm, device.max_torque_Nm);
-  if (device.rendered_dof <= kForceOnly) {
+  if (!device.renders_torque()) {
     safety.max_torque_Nm = 0;
     settings.passivity_limits.damper_Nm_s_per_rad = 0;
   }
-  if (device.sensed_dof <= kPositionOnly) settings.fixed_orientation = orientation;
+  if (!device.senses_orientation()) settings.fixed_orientation = orientation;
 }
 
 }  // namespace palpate::realtime

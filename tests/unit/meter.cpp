@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// A meter on a clock that a test sets.
+#include "rt_core/base/meter.hpp"
+
+#include <gtest/gtest.h>
+
+namespace palpate {
+namespace {
+
+constexpr std::uint64_t kDeadline_ns = 1'000'000;
+
+struct SetClock {
+  std::uint64_t now_ns = 0;
+
+  static std::uint64_t read(void* self) { return static_cast<SetClock*>(self)->now_ns; }
+  Budget budget() { return {.clock_ns = read, .clock_context = this, .deadline_ns = kDeadline_ns}; }
+};
+
+/// When refinement ends on a meter made at time zero, by bisection.
+std::uint64_t end_ns(const Meter& meter, SetClock& clock) {
+  std::uint64_t low = 0;
+  std::uint64_t high = 2 * kDeadline_ns;
+  while (high - low > 1) {
+    clock.now_ns = (low + high) / 2;
+    (meter.out_of_time() ? high : low) = clock.now_ns;
+  }
+  return high;
+}
+
+/// Has seen many tails of ticks with a hundred contacts.
+TailTime learnt(std::uint64_t tail_ns) {
+  TailTime tail;
+  for (int i = 0; i < 100; ++i) tail.learn(tail_ns, 100);
+  return tail;
+}
+
+TEST(Meter, nothing_learnt_leaves_all_to_refinement) {
+  SetClock clock;
+  const Meter meter(clock.budget(), {});
+  EXPECT_EQ(end_ns(meter, clock), kDeadline_ns);
+}
+
+TEST(Meter, tail_of_the_contacts_expected_is_left) {
+  constexpr std::uint64_t kTail_ns = 50'000;
+  SetClock clock;
+  Meter meter(clock.budget(), learnt(kTail_ns));
+  EXPECT_GT(end_ns(meter, clock), kDeadline_ns - kTail_ns / 10);
+  meter.expect_contacts(100);
+  const std::uint64_t end = end_ns(meter, clock);
+  EXPECT_LT(end, kDeadline_ns - kTail_ns);
+  EXPECT_GT(end, kDeadline_ns - 2 * kTail_ns);
+  meter.expect_contacts(20);
+  EXPECT_EQ(end_ns(meter, clock), end);
+}
+
+TEST(Meter, tail_gets_no_more_than_half) {
+  SetClock clock;
+  Meter meter(clock.budget(), learnt(kDeadline_ns));
+  meter.expect_contacts(1'000'000);
+  EXPECT_EQ(end_ns(meter, clock), kDeadline_ns / 2);
+}
+
+TEST(Meter, contacts_found_while_a_share_is_held_back_count_after_its_release) {
+  SetClock clock;
+  Meter meter(clock.budget(), learnt(50'000));
+  clock.now_ns = 0;
+  meter.hold_back(2);
+  EXPECT_LT(end_ns(meter, clock), kDeadline_ns * 6 / 10);
+  meter.expect_contacts(100);
+  EXPECT_LT(end_ns(meter, clock), kDeadline_ns * 6 / 10);
+  meter.release();
+  EXPECT_LT(end_ns(meter, clock), kDeadline_ns - 50'000);
+}
+
+TEST(Meter, one_interrupted_tail_hardly_counts) {
+  TailTime tail = learnt(50'000);
+  const std::uint64_t before_ns = tail.expected_ns(100);
+  tail.learn(50'000'000, 100);
+  EXPECT_LT(tail.expected_ns(100), 3 * before_ns);
+}
+
+}  // namespace
+}  // namespace palpate

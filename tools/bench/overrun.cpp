@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far ticks with a budget of time run past their deadline.
+//
+//   bench_overrun ENGINE TICKS BUDGET_US...      ENGINE: levels (exact), simplified (levels,
+//                                                s0 = 0.025) or regions
+//
+// Interlocking jaws pressed together (tools/bench/scenes.cpp), contact tolerance 2 % of the
+// radius: slow and fast passes along one motion, forwards and backwards, and a leap to another
+// place of it every thousand ticks. A row (CSV) a budget: ticks, ticks that the deadline ended, and
+// of those how far past it they were over, in microseconds: median, 99.9 %, 99.999 % and largest;
+// then the largest of those alone in which the thread was not interrupted, as far as its own clock
+// tells; the mean time of a work unit; and ticks that had no contact where there is one. Wants a
+// core of its own: `chrt -f 50 taskset -c 1 bench_overrun ...`.
+#include <time.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <iterator>
+#include <string_view>
+#include <vector>
+
+#include "tools/bench/scenes.hpp"
+
+namespace palpate::bench {
+namespace {
+
+constexpr SceneName kJaws{"jaws", "jaw_lower", "jaw_upper", true};
+constexpr int kPlaces = 2000;
+constexpr std::uint64_t kPass = 1000;  // ticks between leaps
+constexpr double kQuiet_us = 2;        // what reading two clocks leaves between them
+
+std::uint64_t read_ns(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return static_cast<std::uint64_t>(t.tv_sec) * 1'000'000'000 +
+         static_cast<std::uint64_t>(t.tv_nsec);
+}
+
+std::uint64_t wall_ns(void* = nullptr) { return read_ns(CLOCK_MONOTONIC); }
+double us_since(std::uint64_t start_ns, std::uint64_t now_ns) {
+  return 1e-3 * (static_cast<double>(now_ns) - static_cast<double>(start_ns));
+}
+
+/// Which place of the motion a tick takes: passes of different speed and direction.
+class Walk {
+ public:
+  std::size_t next() {
+    if (tick_++ % kPass == 0) leap();
+    at_ = (at_ + step_) % kPlaces;
+    return at_;
+  }
+
+ private:
+  void leap() {
+    seed_ = seed_ * 6364136223846793005u + 1442695040888963407u;
+    constexpr std::size_t kSteps[] = {1, kPlaces - 1, 0, 3, kPlaces - 7, 20};
+    at_ = (seed_ >> 33) % kPlaces;
+    step_ = kSteps[(seed_ >> 20) % std::size(kSteps)];
+  }
+
+  std::uint64_t tick_ = 0, seed_ = 1;
+  std::size_t at_ = 0, step_ = 1;
+};
+
+struct Place {
+  Pose pose;
+  bool touches = false;  ///< something is nearer than delta
+};
+
+std::vector<Place> places_of(const Body& a, const Body& b, double delta_m) {
+  Bench exact(a, b, {.engine = EngineKind::regions, .delta_m = delta_m, .exact = true});
+  std::vector<Place> places;
+  for (const Pose& pose : motion(kJaws, a, b, delta_m, kPlaces)) {
+    places.push_back({pose, !exact.tick_at(pose).contacts.empty()});
+  }
+  return places;
+}
+
+struct Row {
+  std::vector<float> over_us;  ///< of ticks that the deadline ended
+  double undisturbed_us = 0;
+  double busy_us = 0, units = 0;
+  std::uint64_t lost = 0;
+};
+
+Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, double budget_us) {
+  Row row;
+  row.over_us.reserve(ticks);
+  bench.forget();
+  Walk walk;
+  for (std::uint64_t i = 0; i < ticks; ++i) {
+    const Place& place = places[walk.next()];
+    const std::uint64_t processor_start = read_ns(CLOCK_THREAD_CPUTIME_ID);
+    const std::uint64_t start = wall_ns();
+    Budget budget;
+    budget.clock_ns = wall_ns;
+    budget.deadline_ns = start + static_cast<std::uint64_t>(1e3 * budget_us);
+    const TickResult r = bench.tick_at(place.pose, budget);
+    const std::uint64_t end = wall_ns();
+    const double busy = us_since(processor_start, read_ns(CLOCK_THREAD_CPUTIME_ID));
+    row.busy_us += us_since(start, end);
+    row.units += static_cast<double>(r.queries);
+    if (place.touches && r.contacts.empty()) ++row.lost;
+    if (!r.certificate.truncated_by_time) continue;
+    const double over = us_since(budget.deadline_ns, end);
+    row.over_us.push_back(static_cast<float>(over));
+    if (us_since(start, end) - busy < kQuiet_us)
+      row.undisturbed_us = std::max(row.undisturbed_us, over);
+  }
+  return row;
+}
+
+double at_share(std::vector<float>& sorted, double share) {
+  if (sorted.empty()) return 0;
+  return static_cast<double>(
+      sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))]);
+}
+
+int main_(std::string_view engine, std::uint64_t ticks, int count, char** budgets_us) {
+  const Body a(kJaws.a, 0.02, bake::ForEngine::both);
+  const Body b(kJaws.b, 0.02, bake::ForEngine::both);
+  const double radius = std::min(a.view.header->radius_m, b.view.header->radius_m);
+  Settings settings{.delta_m = 0.02 * radius, .exact = engine != "simplified"};
+  if (engine == "regions") settings.engine = EngineKind::regions;
+  const std::vector<Place> places = places_of(a, b, settings.delta_m);
+  Bench bench(a, b, settings);
+  std::puts(
+      "engine,budget_us,ticks,ended_by_deadline,over_p50_us,over_p99.9_us,over_p99.999_us,"
+      "over_max_us,over_max_undisturbed_us,unit_us,lost");
+  for (int i = 0; i < count; ++i) {
+    const double budget_us = std::atof(budgets_us[i]);
+    Row row = run(bench, places, ticks, budget_us);
+    std::sort(row.over_us.begin(), row.over_us.end());
+    std::printf("%.*s,%g,%llu,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%.3f,%llu\n",
+                static_cast<int>(engine.size()), engine.data(), budget_us,
+                static_cast<unsigned long long>(ticks), row.over_us.size(),
+                at_share(row.over_us, 0.5), at_share(row.over_us, 0.999),
+                at_share(row.over_us, 0.99999), at_share(row.over_us, 1), row.undisturbed_us,
+                row.busy_us / std::max(row.units, 1.0), static_cast<unsigned long long>(row.lost));
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace palpate::bench
+
+int main(int argc, char** argv) {
+  const std::string_view engine = argc > 1 ? argv[1] : "";
+  if (argc < 4 || (engine != "levels" && engine != "simplified" && engine != "regions")) {
+    std::fputs("usage: bench_overrun levels|simplified|regions TICKS BUDGET_US...\n", stderr);
+    return 2;
+  }
+  return palpate::bench::main_(engine, std::strtoull(argv[2], nullptr, 10), argc - 3, argv + 3);
+}
