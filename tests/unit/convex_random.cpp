@@ -163,15 +163,23 @@ TEST(Distance, coherent_motion_warm_agrees_with_cold) {
   EXPECT_LT(static_cast<double>(iterations), 2.0 * queries);
 }
 
-TEST(Distance, enough_above_never_stops_a_nearer_pair) {
-  Random random(7);
+/// Calls check(a, b, pose, exact answer, random) for random hulls until it fails.
+template <class Check>
+void for_random_pairs(unsigned seed, Check check) {
+  Random random(seed);
   const std::vector<Shape> pool = shape_pool(60, random);
-  for (int i = 0; i < kQueries / 10; ++i) {
+  for (int i = 0; i < kQueries / 10 && !testing::Test::HasFatalFailure(); ++i) {
     const Hull a = pool[random() % pool.size()].hull();
     const Hull b = pool[random() % pool.size()].hull();
     const RelativePose pose = random_pose(random, 1.5);
     Cache cache;
-    const Distance exact = distance(a, b, pose, kExact, cache);
+    check(a, b, pose, distance(a, b, pose, kExact, cache), random);
+  }
+}
+
+TEST(Distance, enough_above_never_stops_a_nearer_pair) {
+  for_random_pairs(7, [](const Hull& a, const Hull& b, const RelativePose& pose,
+                         const Distance& exact, Random& random) {
     const double limit = uniform(random, 0, 1);
     Cache cold;
     const Distance early = distance(a, b, pose, {.above = limit}, cold);
@@ -182,18 +190,12 @@ TEST(Distance, enough_above_never_stops_a_nearer_pair) {
     if (exact.lower_bound > limit) {
       ASSERT_GT(early.lower_bound, limit);
     }
-  }
+  });
 }
 
 TEST(Distance, enough_below_never_stops_a_farther_pair) {
-  Random random(8);
-  const std::vector<Shape> pool = shape_pool(60, random);
-  for (int i = 0; i < kQueries / 10; ++i) {
-    const Hull a = pool[random() % pool.size()].hull();
-    const Hull b = pool[random() % pool.size()].hull();
-    const RelativePose pose = random_pose(random, 1.5);
-    Cache cache;
-    const Distance exact = distance(a, b, pose, kExact, cache);
+  for_random_pairs(8, [](const Hull& a, const Hull& b, const RelativePose& pose,
+                         const Distance& exact, Random& random) {
     const double limit = uniform(random, 0, 1);
     Cache cold;
     const Distance early = distance(a, b, pose, {.below = limit}, cold);
@@ -203,23 +205,17 @@ TEST(Distance, enough_below_never_stops_a_farther_pair) {
     if (exact.lower_bound > limit) {
       ASSERT_NEAR(early.distance, exact.distance, 3e-9);
     }
-  }
+  });
 }
 
 TEST(Distance, guess_in_any_direction_changes_no_distance) {
-  Random random(9);
-  const std::vector<Shape> pool = shape_pool(60, random);
-  for (int i = 0; i < kQueries / 10; ++i) {
-    const Hull a = pool[random() % pool.size()].hull();
-    const Hull b = pool[random() % pool.size()].hull();
-    const RelativePose pose = random_pose(random, 1.5);
-    Cache cache;
-    const Distance exact = distance(a, b, pose, kExact, cache);
+  for_random_pairs(9, [](const Hull& a, const Hull& b, const RelativePose& pose,
+                         const Distance& exact, Random& random) {
     Cache cold;
     const Distance guessed = distance(a, b, pose, kExact, cold, random_unit(random));
     ASSERT_EQ(overlaps(guessed), overlaps(exact));
     ASSERT_NEAR(guessed.distance, exact.distance, 3e-9);
-  }
+  });
 }
 
 }  // namespace
