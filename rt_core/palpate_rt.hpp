@@ -117,6 +117,11 @@ struct Budget {
 };
 
 /// A pair of closest points of two pieces nearer than delta. World axes.
+///
+/// Where the pieces overlap, point_b_m - point_a_m leads out along the normal, about as far as
+/// the overlap is deep. The levels engine gives points of the pieces' hulls; the regions engine
+/// gives points about the middle of the curve in which the surfaces cross (regions/crossing.hpp),
+/// which need not lie on either.
 struct Contact {
   Vec3d point_a_m{};      ///< on the surface of body a
   Vec3d point_b_m{};      ///< on the surface of body b
@@ -189,8 +194,9 @@ Status configure(Engine& engine, const Settings& settings) noexcept;
 /// normalised)
 /// @param out    written only where the result is Status::ok
 /// Errors: bad_pose, bad_argument. Cost: the budget, plus at most one convex query and a tail that
-/// is linear in the front and in contacts * log(contacts). No allocation, no lock, no
-/// recursion, bounded stack.
+/// is linear in the front and in contacts * log(contacts), and for which time is left before the
+/// deadline. An exact query of the levels engine that has no budget, and whose nodes or contacts
+/// turn out not to fit, is done twice. No allocation, no lock, no recursion, bounded stack.
 Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
             TickResult& out) noexcept;
 

@@ -46,7 +46,8 @@ class Meter {
     leave_for_tail(0);
   }
 
-  /// So many contacts there are or will be; fewer than before change nothing.
+  /// So many contacts there are or will be; fewer than before change nothing. Where time is
+  /// limited, refinement ends the sooner. O(1)
   void expect_contacts(std::uint64_t contacts) noexcept {
     if (contacts <= contacts_) return;
     contacts_ = contacts;

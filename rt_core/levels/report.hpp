@@ -45,6 +45,7 @@ class Report {
   /// Adds the contact of a node that has none yet in this tick. False where there is no room.
   bool add(const PairState& pair, Node& node, const LeafContact& contact) noexcept;
 
+  /// Added so far, those that a mix has dropped too.
   [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
 
   /// Puts another one in the place of what was added for a node.

@@ -11,8 +11,6 @@
 // then the largest of those alone in which the thread was not interrupted, as far as its own clock
 // tells; the mean time of a work unit; and ticks that had no contact where there is one. Wants a
 // core of its own: `chrt -f 50 taskset -c 1 bench_overrun ...`.
-#include <time.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -21,6 +19,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/bench/clocks.hpp"
 #include "tools/bench/scenes.hpp"
 
 namespace palpate::bench {
@@ -31,14 +30,6 @@ constexpr int kPlaces = 2000;
 constexpr std::uint64_t kPass = 1000;  // ticks between leaps
 constexpr double kQuiet_us = 2;        // what reading two clocks leaves between them
 
-std::uint64_t read_ns(clockid_t clock) {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return static_cast<std::uint64_t>(t.tv_sec) * 1'000'000'000 +
-         static_cast<std::uint64_t>(t.tv_nsec);
-}
-
-std::uint64_t wall_ns(void* = nullptr) { return read_ns(CLOCK_MONOTONIC); }
 double us_since(std::uint64_t start_ns, std::uint64_t now_ns) {
   return 1e-3 * (static_cast<double>(now_ns) - static_cast<double>(start_ns));
 }
@@ -92,14 +83,14 @@ Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, dou
   Walk walk;
   for (std::uint64_t i = 0; i < ticks; ++i) {
     const Place& place = places[walk.next()];
-    const std::uint64_t processor_start = read_ns(CLOCK_THREAD_CPUTIME_ID);
+    const std::uint64_t processor_start = processor_ns();
     const std::uint64_t start = wall_ns();
     Budget budget;
     budget.clock_ns = wall_ns;
     budget.deadline_ns = start + static_cast<std::uint64_t>(1e3 * budget_us);
     const TickResult r = bench.tick_at(place.pose, budget);
     const std::uint64_t end = wall_ns();
-    const double busy = us_since(processor_start, read_ns(CLOCK_THREAD_CPUTIME_ID));
+    const double busy = us_since(processor_start, processor_ns());
     row.busy_us += us_since(start, end);
     row.units += static_cast<double>(r.queries);
     if (place.touches && r.contacts.empty()) ++row.lost;
@@ -118,7 +109,7 @@ double at_share(std::vector<float>& sorted, double share) {
       sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))]);
 }
 
-int main_(std::string_view engine, std::uint64_t ticks, int count, char** budgets_us) {
+int measure(std::string_view engine, std::uint64_t ticks, int count, char** budgets_us) {
   const Body a(kJaws.a, 0.02, bake::ForEngine::both);
   const Body b(kJaws.b, 0.02, bake::ForEngine::both);
   const double radius = std::min(a.view.header->radius_m, b.view.header->radius_m);
@@ -153,5 +144,5 @@ int main(int argc, char** argv) {
     std::fputs("usage: bench_overrun levels|simplified|regions TICKS BUDGET_US...\n", stderr);
     return 2;
   }
-  return palpate::bench::main_(engine, std::strtoull(argv[2], nullptr, 10), argc - 3, argv + 3);
+  return palpate::bench::measure(engine, std::strtoull(argv[2], nullptr, 10), argc - 3, argv + 3);
 }

@@ -7,8 +7,6 @@
 // distance is from FCL's, over ticks where the surfaces are apart and nearer than delta. Every
 // query runs over all poses three times, in turns with the others, and each tick has its median.
 // Times are of the thread's own processor clock, so that a busy machine shows in the caches only.
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -21,6 +19,7 @@
 #include <vector>
 
 #include "host_bake/mesh/read.hpp"
+#include "tools/bench/clocks.hpp"
 #ifdef PALPATE_BENCH_BULLET
 #include "tools/bench/mesh_bullet.hpp"
 #endif
@@ -36,13 +35,6 @@ namespace {
 constexpr int kPasses = 3;
 constexpr std::size_t kMostCrossings = 100'000;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-std::uint64_t processor_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<std::uint64_t>(t.tv_sec) * 1'000'000'000 +
-         static_cast<std::uint64_t>(t.tv_nsec);
-}
 
 struct Answer {
   double distance_m = kNone;  ///< NaN: none below delta, or not what this query tells

@@ -14,8 +14,6 @@
 // certified error over that force; force_step is the largest change of force from tick to tick.
 // Where FCL is installed, its distance of the same meshes (one least distance, OBBRSS) is asked
 // between the exact ticks, pose by pose; of_fcl is our time by its time, summed over the run.
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -26,6 +24,7 @@
 #include <vector>
 
 #include "host_bake/models/models.hpp"
+#include "tools/bench/clocks.hpp"
 #include "tools/bench/scenes.hpp"
 #if defined(PALPATE_BENCH_FCL)
 #include "tools/bench/mesh_fcl.hpp"
@@ -42,13 +41,6 @@ constexpr SceneName kScenes[] = {{"jaws", "jaw_lower", "jaw_upper", true},
                                  {"socket", "golf_ball", "golf_shell", true},
                                  {"screw", "screw", "nut", true},
                                  {"joint", "ball_joint_head", "ball_joint_cup", true}};
-
-std::uint64_t processor_ns(void* = nullptr) {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<std::uint64_t>(t.tv_sec) * 1'000'000'000 +
-         static_cast<std::uint64_t>(t.tv_nsec);
-}
 
 Budget within(double budget_us) {
   Budget budget;
