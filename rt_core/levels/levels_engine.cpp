@@ -62,9 +62,9 @@ void finish(Work& work) noexcept {
   work.result.iteration_cap_met |= work.probe.iteration_cap_met();
 }
 
-void run(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally, Pace pace,
+void run(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally, Discipline discipline,
          QueryResult& out) noexcept {
-  Work work(memory, rules, meter, tally, pace);
+  Work work(memory, rules, meter, tally, discipline);
   hold_back(work);  // where a tick starts depends on what refinement may spend
   start(work);
   meter.release();
@@ -89,15 +89,18 @@ void run(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally, Pa
 
 QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally) noexcept {
   ++memory.ticks;
-  const bool whole = rules.exact && !meter.limited();
+  const bool endless = rules.exact && !meter.limited();
   QueryResult found;
-  run(memory, rules, meter, tally, whole ? Pace::whole : Pace::by_worth, found);
-  if (!whole || !found.truncated_by_memory) return found;
-  // Too little memory for the whole: what is nearest gets it, from the roots on.
-  for (PairState& pair : memory.pairs) pair.fresh = true;
+  if (endless && !memory.short_of_room) {
+    run(memory, rules, meter, tally, Discipline::whole, found);
+    if (!found.truncated_by_memory) return found;
+    // What is nearest gets the memory, from the roots on.
+    for (PairState& pair : memory.pairs) pair.fresh = true;
+  }
   const std::uint64_t spent = found.queries;
-  run(memory, rules, meter, tally, Pace::by_worth, found);
+  run(memory, rules, meter, tally, Discipline::by_worth, found);
   found.queries += spent;
+  memory.short_of_room = endless && found.truncated_by_memory;
   return found;
 }
 

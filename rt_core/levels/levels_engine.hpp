@@ -29,6 +29,7 @@ struct QueryMemory {
   std::size_t raise_next = 0;  ///< where in the front raising goes on
   std::uint32_t ticks = 0;     ///< marks inner nodes that interpolation has been to
   std::uint64_t query_ns = 0;  ///< time of a query, smoothed; 0 without a clock
+  bool short_of_room = false;  ///< the last exact query without a budget did not fit
 };
 
 /// What a query found.
@@ -56,8 +57,9 @@ struct QueryResult {
 /// the budget ends keeps its lower bound, and the last contact that it or an ancestor gave,
 /// re-measured at its material points: the cut is complete at every moment, and a truncated answer
 /// loses detail only. An exact query that no budget can end is worked off in the cheapest order
-/// (Pace::whole); where its nodes or contacts turn out not to fit, it begins again from the roots,
-/// by worth, so that what is nearest gets the memory. Departure: nearest first within what has to
+/// (Discipline::whole); where its nodes or contacts turn out not to fit, it begins again from the
+/// roots, by worth, so that what is nearest gets the memory, and later ticks go on from there until
+/// one fits. Departure: nearest first within what has to
 /// be measured anyway, so that forces are renewed before detail is added. Cost: the budget, plus
 /// one leaf contact, plus O(front).
 QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally) noexcept;

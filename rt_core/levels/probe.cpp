@@ -11,8 +11,8 @@ constexpr double kMotionSlack = 1e-9;
 /// A query may stop once the pair is this many ticks of the present motion farther than delta: it
 /// then rests for as long.
 constexpr double kRestTicks = 6;
-/// With Pace::whole also at this share of delta: in fast motion a longer rest saves queries, but
-/// costs more iterations than these would.
+/// With Discipline::whole also at this share of delta: in fast motion a longer rest saves queries,
+/// but costs more iterations than these would.
 constexpr double kRestShare = 0.2;
 
 /// Rounded towards minus infinity far enough for float.
@@ -92,7 +92,7 @@ double Probe::rest_margin(const PairState& pair, const Node& node) const noexcep
   const double margin =
       kRestTicks * (pair.last_travel + pair.last_turn * static_cast<double>(node.reach));
   const double most = kRestShare * pair.delta;
-  return pace_ == Pace::whole && margin > most ? most : margin;
+  return discipline_ == Discipline::whole && margin > most ? most : margin;
 }
 
 convex::Distance Probe::cull(const PairState& pair, Node& node, Ask ask) noexcept {
@@ -103,12 +103,12 @@ convex::Distance Probe::cull(const PairState& pair, Node& node, Ask ask) noexcep
   const double residual = pair.scale_a * static_cast<double>(a.culling_residual) +
                           pair.scale_b * static_cast<double>(b.culling_residual);
   const double reach = pair.delta + residual;
-  const convex::Distance d =
-      convex::distance(culling_hull_of(*pair.image_a, a, pair.scale_a),
-                       culling_hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a,
-                       {.above = reach + rest_margin(pair, node),
-                        .below = ask == Ask::nearness && pace_ == Pace::whole ? reach : 0},
-                       node.culling, vec_cast<double>(node.normal));
+  const convex::Distance d = convex::distance(
+      culling_hull_of(*pair.image_a, a, pair.scale_a),
+      culling_hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a,
+      {.above = reach + rest_margin(pair, node),
+       .below = ask == Ask::nearness && discipline_ == Discipline::whole ? reach : 0},
+      node.culling, vec_cast<double>(node.normal));
   note(d);
   tally_.count([](auto& counters) { ++counters.culling_queries; });
   if (node.contact == 0 && !overlaps(d)) node.normal = vec_cast<float>(d.normal);

@@ -47,8 +47,8 @@ enum class Ask : std::uint8_t {
 /// Does the queries, charges them, and proves the bounds that follow for the original surface.
 class Probe {
  public:
-  Probe(const Rules& rules, Meter& meter, Tally& tally, Pace pace) noexcept
-      : rules_(rules), meter_(meter), tally_(tally), pace_(pace) {}
+  Probe(const Rules& rules, Meter& meter, Tally& tally, Discipline discipline) noexcept
+      : rules_(rules), meter_(meter), tally_(tally), discipline_(discipline) {}
 
   /// Of the culling hulls, exact up to delta and a little more, so that a node rests for some
   /// ticks. With Bounds::paper of the hulls themselves, widened by h (eq. 5). certain_now() then
@@ -83,7 +83,7 @@ class Probe {
   const Rules& rules_;
   Meter& meter_;
   Tally& tally_;
-  Pace pace_;
+  Discipline discipline_;
   std::uint64_t queries_ = 0;
   bool capped_ = false;
 };

@@ -26,7 +26,7 @@ struct Rules {
 };
 
 /// How a query is worked off. What it finds, if nothing ends it, does not depend on it.
-enum class Pace : std::uint8_t {
+enum class Discipline : std::uint8_t {
   by_worth,  ///< it may end at any moment: what matters most comes first, with tight bounds on the
              ///< way
   whole,     ///< nothing ends it before it is exact: in the order, and with the bounds, that cost

@@ -29,12 +29,12 @@ struct Earlier {
   }
 };
 
-/// Earliest first; where a query is worked off to its end (Pace::whole) last first: a push or pop
-/// is then O(1), and what lies together in memory is worked off together.
+/// Earliest first; where a query is worked off to its end (Discipline::whole) last first: a push or
+/// pop is then O(1), and what lies together in memory is worked off together.
 class WaitQueue {
  public:
-  WaitQueue(std::span<Waiting> storage, Pace pace) noexcept
-      : storage_(storage), heap_(storage), pace_(pace) {}
+  WaitQueue(std::span<Waiting> storage, Discipline discipline) noexcept
+      : storage_(storage), heap_(storage), discipline_(discipline) {}
 
   [[nodiscard]] bool empty() const noexcept { return items().empty(); }
   [[nodiscard]] std::span<const Waiting> items() const noexcept {
@@ -60,12 +60,12 @@ class WaitQueue {
   }
 
  private:
-  [[nodiscard]] bool is_heap() const noexcept { return pace_ == Pace::by_worth; }
+  [[nodiscard]] bool is_heap() const noexcept { return discipline_ == Discipline::by_worth; }
 
   std::span<Waiting> storage_;
   MinQueue<Waiting, Earlier> heap_;
   std::size_t stacked_ = 0;
-  Pace pace_;
+  Discipline discipline_;
 };
 
 }  // namespace palpate::levels

@@ -20,15 +20,15 @@ inline bool is_simplified(const image::Piece& piece) noexcept {
 
 struct Work {
   Work(QueryMemory& query_memory, const Rules& query_rules, Meter& query_meter, Tally& query_tally,
-       Pace pace) noexcept
+       Discipline discipline) noexcept
       : memory(query_memory),
         tree(query_memory.tree),
         rules(query_rules),
         meter(query_meter),
         tally(query_tally),
-        probe(query_rules, query_meter, query_tally, pace),
+        probe(query_rules, query_meter, query_tally, discipline),
         report(query_memory.contacts),
-        waiting(query_memory.waiting, pace),
+        waiting(query_memory.waiting, discipline),
         stopped(query_memory.stopped) {}
 
   [[nodiscard]] PairState& pair_of(const Node& node) const noexcept {

@@ -81,6 +81,34 @@ TEST(EngineBudget, few_nodes_without_a_budget_go_to_what_is_nearest) {
   }
 }
 
+TEST(EngineBudget, few_nodes_are_not_found_too_few_in_every_tick) {
+  const Limits few{.nodes = 100};
+  BakedScene endless({bodies().a.view, bodies().b.view}, {{0, 1}}, kSettings, few);
+  BakedScene by_worth({bodies().a.view, bodies().b.view}, {{0, 1}}, kSettings, few);
+  double queries = 0;
+  double queries_by_worth = 0;
+  for (int i = 0; i < 30; ++i) {
+    const Pose poses[2] = {slide(i), {}};
+    const TickResult r = tick_or_fail(*endless.engine, poses);
+    const TickResult s = tick_or_fail(*by_worth.engine, poses, {.units = 1000000});
+    ASSERT_TRUE(r.certificate.truncated_by_memory);
+    if (i == 0) continue;
+    queries += static_cast<double>(r.queries);
+    queries_by_worth += static_cast<double>(s.queries);
+  }
+  EXPECT_NEAR(queries, queries_by_worth, 0.1 * queries_by_worth);
+}
+
+TEST(EngineBudget, room_is_tried_again_after_a_tick_that_fits) {
+  const Pose near[2] = {slide(0), {}};
+  const Pose apart[2] = {{{4, 0, 0}, {}}, {}};
+  BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, kSettings, {.nodes = 100});
+  const std::uint64_t both_ways = tick_or_fail(*scene.engine, near).queries;
+  EXPECT_LT(tick_or_fail(*scene.engine, near).queries, both_ways / 2);
+  ASSERT_FALSE(tick_or_fail(*scene.engine, apart).certificate.truncated_by_memory);
+  EXPECT_EQ(tick_or_fail(*scene.engine, near).queries, both_ways);
+}
+
 TEST(EngineBudget, few_contacts_are_a_reported_graceful_stop) {
   BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, kSettings, {.contacts = 1});
   const PlacedTriangles fixed(bodies().b.mesh, {});
