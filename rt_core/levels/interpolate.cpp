@@ -40,19 +40,13 @@ class Group {
     const double share = childrens_share(missing.excess);
     if (share >= 1) return false;
     const LeafContact of_parent = contact_of_parent(a, b, d);
-    // A witness inside the solid says nothing of the surface: who has a contact keeps it.
-    if (!of_parent.found && d.lower_bound < pair_.delta && any_child_touches()) return false;
+    // It would be refined for that (refine.cpp), or says nothing of what its children touch.
+    if (of_parent.hidden_a || of_parent.hidden_b) return false;
     mix(of_parent, share);
     return missing.excess <= 1;
   }
 
  private:
-  bool any_child_touches() const noexcept {
-    std::uint32_t c = parent_.first_child;
-    while (c != kNone && work_.tree[c].report == kNone) c = work_.tree[c].next_sibling;
-    return c != kNone;
-  }
-
   double childrens_share(double parents_excess) const noexcept {
     if (parents_excess <= 1) return 0;
     double most = 0;
@@ -72,6 +66,7 @@ class Group {
     const LeafContact contact = leaf_contact(pair_, a, b, d, parent_.own, pair_.delta,
                                              work_.meter.queries_left(), *work_.memory.scratch);
     work_.probe.charge_parts(contact.queries);
+    if (contact.hidden_a || contact.hidden_b) return contact;
     if (!contact.found || contact.interrupted || contact.distance >= pair_.delta) return {};
     keep(pair_, a, b, contact, parent_);
     return contact;

@@ -210,7 +210,7 @@ LeafContact leaf_contact(const PairState& pair, const Piece& a, const Piece& b,
     return contact;
   }
   if (overlap) return overlapping(pair, a, b, cache, scratch);
-  if (virtual_a || virtual_b) return {};
+  if (virtual_a || virtual_b) return {.hidden_a = virtual_a, .hidden_b = virtual_b};
   return from_distance(query);
 }
 

@@ -22,6 +22,9 @@ struct LeafContact {
   std::uint32_t queries = 0;  ///< convex queries spent beyond the caller's
   bool interrupted = false;   ///< most_queries ended the search: something nearer may be left
   bool capped = false;        ///< an iteration cap was met: [lower_bound, distance] is an interval
+  bool hidden_a = false;      ///< not found: a's hull is nearest where it is inside the solid, and
+                              ///< tells nothing of a's surface
+  bool hidden_b = false;
 };
 
 /// A point this near to a triangle of a patch lies on it. Baked vertices are rounded to 6e-8 and
@@ -32,9 +35,11 @@ inline constexpr double kOnSurface = 1e-6;
 ///
 /// Disjoint hulls: the witnesses are a contact where both lie on the mesh. A witness on a virtual
 /// face lies inside the solid, behind surface that is nearer to the other body and has its own
-/// piece: the pair contributes nothing (the paper leaves this open). Pieces of open or
-/// self-crossing components have no inside; there the triangles of the patch are queried one by one
-/// instead of the hull. Overlapping hulls: penetration depth and direction (Appendix B, step 2b).
+/// piece: the pair contributes nothing (the paper leaves this open). Of simplified pieces that
+/// piece may be of a level at which its surface ends elsewhere, so they are not where refinement
+/// may stop (hidden_a, hidden_b). Pieces of open or self-crossing components have no inside; there
+/// the triangles of the patch are queried one by one instead of the hull. Overlapping hulls:
+/// penetration depth and direction (Appendix B, step 2b).
 /// @param query         the result for the hulls of a and b
 /// @param reach         only contacts nearer than this are wanted
 /// @param most_queries  to spend on triangles; beyond that the contact may not be the nearest

@@ -79,11 +79,12 @@ void stop_on_surface(Work& work, std::uint32_t index, const LeafContact& contact
 
 /// Keeps the contact of two pieces in the node, and reports it where refinement stops here and does
 /// not dive. One that a dive found before stays while it is one: it is the better guess.
-void touch(Work& work, Node& node, const convex::Distance& d, bool stops) noexcept {
+/// @return what leaf_contact() says; nothing where it was not asked
+LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops) noexcept {
   const bool dives = work.dives(node);
   if (dives && has_dived(node) &&
       remeasured(work.pair_of(node), node).distance < work.pair_of(node).delta)
-    return;
+    return {};
   const PairState& pair = work.pair_of(node);
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
@@ -95,13 +96,27 @@ void touch(Work& work, Node& node, const convex::Distance& d, bool stops) noexce
     work.result.truncated_by_units = true;
     work.leave_unresolved(work.certain_m(node), node);
   }
-  if (!contact.found) return;
+  if (!contact.found) return contact;
   const bool original = !is_simplified(a) && !is_simplified(b);
   if (original && !contact.interrupted) prove(pair, node, contact.lower_bound);
   work.note_cap(pair, contact);
-  if (contact.distance >= pair.delta) return;
+  if (contact.distance >= pair.delta) return contact;
   keep(pair, a, b, contact, node);
   if (stops && !dives) work.add_contact(node, contact);
+  return contact;
+}
+
+/// No detail is missing, but what there is of it gives no contact where there may be one: a cut
+/// through several levels has gaps between pieces whose surfaces end elsewhere at each of them.
+/// Refined on, unless what pushes the same way is nearer anyway.
+void refine_hidden(const Work& work, const Node& node, const convex::Distance& d,
+                   const LeafContact& contact, Detail& missing) noexcept {
+  const PairState& pair = work.pair_of(node);
+  if (work.dives(node) || pair.felt.is_nearer(d.normal, d.distance)) return;
+  const Piece& a = piece_a(pair, node);
+  const Piece& b = piece_b(pair, node);
+  missing.refine_a = contact.hidden_a && is_simplified(a) && a.children != 0;
+  missing.refine_b = contact.hidden_b && is_simplified(b) && b.children != 0;
 }
 
 /// A node that gives no contact itself.
@@ -127,14 +142,14 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
   Node& node = work.tree[index];
   const PairState& pair = work.pair_of(node);
   const convex::Distance d = work.probe.own(pair, node);
-  const Detail missing = detail(pair, piece_a(pair, node), piece_b(pair, node), d, work.rules);
+  Detail missing = detail(pair, piece_a(pair, node), piece_b(pair, node), d, work.rules);
   node.s_star = static_cast<float>(missing.s_star);
   node.excess = static_cast<float>(missing.excess);
   if (work.rests_apart(node, d)) {
     node.contact = 0;
     return;
   }
-  const bool refines = missing.refine_a || missing.refine_b;
+  bool refines = missing.refine_a || missing.refine_b;
   if (refines && may_stop_on_surface(work, node) && !work.out_of_budget()) {
     const SurfaceStop surface = probe_surface(work, node);
     if (surface.stops) {
@@ -144,7 +159,10 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
   }
   if (d.lower_bound < pair.delta) {
     // Overlap of simplified hulls is no contact: the last one, of an ancestor apart, stands.
-    if (!refines || !convex::overlaps(d)) touch(work, node, d, !refines);
+    const LeafContact contact =
+        refines && convex::overlaps(d) ? LeafContact{} : touch(work, node, d, !refines);
+    if (!refines) refine_hidden(work, node, d, contact, missing);
+    refines = missing.refine_a || missing.refine_b;
   } else if (!work.dives(node) || !has_dived(node)) {
     node.contact = 0;
   }

@@ -9,8 +9,9 @@ namespace palpate::levels {
 /// Works the queue off while the budget lasts.
 ///
 /// Near front nodes are measured first, nearest first: at delta or more they rest; where missing
-/// detail could be felt (rules.hpp) they wait to be split, in the order of Rules::order over all
-/// pairs of bodies, free levels first; else they stop and give a contact, as they do with
+/// detail could be felt (rules.hpp), or what there is of it hides a contact that could be
+/// (LeafContact::hidden_a), they wait to be split, in the order of Rules::order over all pairs of
+/// bodies, free levels first; else they stop and give a contact, as they do with
 /// Rules::stop_on_surface where that is already one of the original surfaces (surface_stop.hpp). A
 /// split replaces a node by all pairs of one piece's children, which are measured before the next
 /// split. What is still on the queue afterwards is not resolved.

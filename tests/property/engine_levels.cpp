@@ -8,9 +8,11 @@
 #include <limits>
 #include <tuple>
 
+#include "host_bake/models/models.hpp"
 #include "tests/support/answers.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/coarse_bodies.hpp"
+#include "tests/support/effort.hpp"
 
 namespace palpate::test {
 namespace {
@@ -50,6 +52,42 @@ TEST(EngineLevels, certificate_holds_whatever_is_left_out) {
           expect_certified(r, truth[static_cast<std::size_t>(i)], kDelta);
         }
       }
+    }
+  }
+}
+
+/// An ellipsoid slides and rolls over a golf ball, 0.4 delta above it.
+std::vector<Pose> rolled(const BakedBody& ellipsoid, const BakedBody& ball, double delta_m) {
+  constexpr double kApart_m = 0.0414;
+  BakedScene wide({ellipsoid.view, ball.view}, {{0, 1}}, {.delta_m = 0.006, .exact = true});
+  std::vector<Pose> path;
+  for (int i = 0; i < effort(400, 100); ++i) {
+    const double u = 0.0035 * i;
+    const double level = std::cos(0.3 * u);
+    const Vec3d out{std::cos(u) * level, std::sin(u) * level, std::sin(0.3 * u)};
+    Pose pose{kApart_m * out, turn({0.6 * std::sin(0.5 * u), u, 0.4 * u})};
+    for (int k = 0; k < 40; ++k) {
+      const Pose poses[2] = {pose, {}};
+      const TickResult r = tick_or_fail(*wide.engine, poses);
+      pose.position_m -= ((r.contacts.empty() ? 0.006 : r.min_distance_m) - 0.4 * delta_m) * out;
+    }
+    path.push_back(pose);
+  }
+  return path;
+}
+
+TEST(EngineLevels, contact_is_not_lost_where_pieces_of_several_levels_meet) {
+  constexpr double kDelta_m = 0.0008;
+  const BakedBody ellipsoid(bake::make_model("ellipsoid", 1000));
+  const BakedBody ball(bake::make_model("golf_ball", 4000));
+  const std::vector<Pose> path = rolled(ellipsoid, ball, kDelta_m);
+  for (const bool interpolate : {false, true}) {
+    BakedScene scene({ellipsoid.view, ball.view}, {{0, 1}},
+                     {.delta_m = kDelta_m, .s0 = 0.05, .interpolate = interpolate});
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const Pose poses[2] = {path[i], {}};
+      EXPECT_FALSE(tick_or_fail(*scene.engine, poses).contacts.empty())
+          << "tick " << i << (interpolate ? ", interpolated" : "");
     }
   }
 }

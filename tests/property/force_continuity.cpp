@@ -35,11 +35,13 @@ Pose ground(double speed_m_per_s, int tick) {
 }
 
 struct Steps {
-  double force_N = 0, torque_Nm = 0;
+  double force_N = 0, torque_Nm = 0;  // the largest
+  int large = 0;                      // how many are larger than kLarge_N
 };
+constexpr double kLarge_N = 0.2;  // four fifths of the largest exact one
 
 Steps largest_steps(const Settings& settings, std::uint64_t units, double speed_m_per_s,
-                    bool steady) {
+                    bool steady, int ticks = effort(400, 40)) {
   BakedScene scene({upper().view, lower().view}, {{0, 1}}, settings);
   const Pose poses[2] = {};
   realtime::EngineQuery contacts(*scene.engine, poses, 0);
@@ -48,11 +50,13 @@ Steps largest_steps(const Settings& settings, std::uint64_t units, double speed_
       steady ? static_cast<realtime::ContactQuery&>(steadied) : contacts;
   Steps steps;
   Wrench before;
-  for (int i = 0; i < effort(400, 40); ++i) {
+  for (int i = 0; i < ticks; ++i) {
     TickResult r;
     EXPECT_EQ(query.tick(ground(speed_m_per_s, i), {.units = units}, r), Status::ok);
     if (i > 0) {
-      steps.force_N = std::max(steps.force_N, norm(r.wrench.force_N - before.force_N));
+      const double step_N = norm(r.wrench.force_N - before.force_N);
+      steps.force_N = std::max(steps.force_N, step_N);
+      steps.large += step_N > kLarge_N ? 1 : 0;
       steps.torque_Nm = std::max(steps.torque_Nm, norm(r.wrench.torque_Nm - before.torque_Nm));
     }
     before = r.wrench;
@@ -87,12 +91,18 @@ INSTANTIATE_TEST_SUITE_P(Speeds, GroundJaws, testing::Values(0.1, 0.3), [](const
 });
 
 TEST(GroundJawsSlowly, without_interpolation_or_steadying_it_is_worse) {
-  const Settings simplified{.s0 = 0.05};
-  const Settings uninterpolated{.s0 = 0.05, .interpolate = false};
-  const double interpolated = largest_steps(simplified, kUnlimited, 0.1, false).force_N;
-  const double plain = largest_steps(uninterpolated, kUnlimited, 0.1, false).force_N;
-  EXPECT_GT(plain, 1.3 * interpolated);
-  EXPECT_GT(interpolated, 1.1 * largest_steps(simplified, kUnlimited, 0.1, true).force_N);
+  constexpr int kWholeWay = 640;
+  for (const double s0 : {0.015, 0.05}) {
+    const auto steps = [s0](bool interpolate, bool steady) {
+      const Settings settings{.s0 = s0, .interpolate = interpolate};
+      return largest_steps(settings, kUnlimited, 0.1, steady, kWholeWay);
+    };
+    const Steps interpolated = steps(true, false);
+    const Steps plain = steps(false, false);
+    EXPECT_GT(plain.force_N, interpolated.force_N) << "s0 " << s0;
+    EXPECT_GE(plain.large, 3 * interpolated.large) << "s0 " << s0;
+    EXPECT_GT(interpolated.force_N, 1.1 * steps(true, true).force_N) << "s0 " << s0;
+  }
 }
 
 }  // namespace
