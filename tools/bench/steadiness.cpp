@@ -3,11 +3,11 @@
 //
 //   bench_steadiness [TICKS]        default: 640 ticks of 1 ms
 //
-// A row (CSV) for each motion, speed, s0 and budget: the largest change of force between two ticks
-// over that of the exact query on the same motion, of the engine as it is, without interpolation,
-// and steadied as `palpate run` does; how many ticks change it by more than four fifths of the
-// exact query's largest change; and the error of the force against the exact one (NRMSE of the
-// peak). Virtual time and work units: the same figures on every machine.
+// A row (CSV) for each motion, speed, setting and budget: the largest change of force between two
+// ticks over that of the exact query on the same motion, of the engine as it is, without
+// interpolation, and steadied as `palpate run` does; how many ticks change it by more than four
+// fifths of the exact query's largest change; and the error of the force against the exact one
+// (NRMSE of the peak). Virtual time and work units: the same figures on every machine.
 //
 // Motions: `ground`, jaws of 6000 triangles ground on each other; `rolled`, an ellipsoid that rolls
 // over a golf ball of 20,000 triangles, 0.4 delta above it.
@@ -44,6 +44,17 @@ class BenchQuery final : public realtime::ContactQuery {
  private:
   Bench& bench_;
 };
+
+struct Setting {
+  const char* name;
+  Settings settings;
+};
+
+const Setting kSettings[] = {{"s0 = 0.005", {.s0 = 0.005}},
+                             {"s0 = 0.015", {.s0 = 0.015}},
+                             {"s0 = 0.05", {.s0 = 0.05}},
+                             {"kappa = 0.1", {.s0 = 1e3, .kappa = 0.1}},
+                             {"s0 = 0.05, dives", {.s0 = 0.05, .contact_dive = true}}};
 
 struct Scene {
   const char* name;
@@ -90,13 +101,14 @@ void print_column(const std::vector<Vec3d>& found, const std::vector<Vec3d>& exa
 
 void measure(const Scene& scene, double speed_m_per_s, const std::vector<Pose>& poses) {
   const std::vector<Vec3d> exact = forces(scene, poses, {.exact = true}, kUnlimited, kNotSteadied);
-  for (const double s0 : {0.005, 0.015, 0.05}) {
+  for (const Setting& setting : kSettings) {
     for (const std::uint64_t units : {kUnlimited, std::uint64_t{200}, std::uint64_t{60}}) {
       const std::string budget = units == kUnlimited ? "none" : std::to_string(units);
-      std::printf("%s,%g,%g,%s,%.4f", scene.name, speed_m_per_s, s0, budget.c_str(),
+      std::printf("%s,%g,\"%s\",%s,%.4f", scene.name, speed_m_per_s, setting.name, budget.c_str(),
                   largest(steps(exact)));
-      const Settings settings{.s0 = s0};
-      const Settings plain{.s0 = s0, .interpolate = false};
+      const Settings& settings = setting.settings;
+      Settings plain = settings;
+      plain.interpolate = false;
       print_column(forces(scene, poses, settings, units, kNotSteadied), exact);
       print_column(forces(scene, poses, plain, units, kNotSteadied), exact);
       print_column(forces(scene, poses, settings, units, {}), exact);
@@ -146,7 +158,7 @@ void measure_rolled(int ticks) {
 
 int main(int argc, char** argv) {
   const int ticks = argc > 1 ? std::max(100, std::atoi(argv[1])) : 640;
-  std::printf("motion,speed_m_per_s,s0,units,exact_step_N");
+  std::printf("motion,speed_m_per_s,setting,units,exact_step_N");
   for (const char* column : {"engine", "no_interpolation", "steadied"}) {
     std::printf(",%s_step,%s_large,%s_nrmse", column, column, column);
   }
