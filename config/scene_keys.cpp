@@ -13,7 +13,7 @@ constexpr double kMost = 1e18;
 
 constexpr std::string_view kEngines[] = {"levels", "regions"};
 constexpr std::string_view kBounds[] = {"tight", "paper"};
-constexpr std::string_view kOrders[] = {"deviation", "nearest", "ratio"};
+constexpr std::string_view kOrders[] = {"deviation", "nearest", "ratio", "force"};
 constexpr std::string_view kCouplings[] = {"direct", "virtual"};
 constexpr std::string_view kRoles[] = {"tool", "moved", "fixed"};
 
@@ -63,8 +63,9 @@ constexpr Key<Scene> kEngineKeys[] = {
      Choice<Scene>{kOrders,
                    [](Scene& s, std::size_t i) { s.settings.order = static_cast<Order>(i); },
                    [](const Scene& s) { return static_cast<std::size_t>(s.settings.order); }},
-     "what is refined first: the largest weighted surface `deviation`, the `nearest`, or the "
-     "largest `ratio` of the two"},
+     "what is refined first: the largest weighted surface `deviation`, the `nearest`, the largest "
+     "`ratio` of the two, or what can still change the `force` most (under a budget, where "
+     "contacts are those of the original surfaces; else as `deviation`)"},
     {"budget_us", "µs",
      OptionalReal<Scene>{[](Scene& s) -> std::optional<double>& { return s.budget_us; }, 0, 1e9},
      "time after which one tick stops refining; absent: unlimited in replay, chosen from the rate "

@@ -51,7 +51,7 @@ typedef struct palpate_scene {
 
 enum { PALPATE_LEVELS = 0, PALPATE_REGIONS = 1 };
 enum { PALPATE_BOUNDS_TIGHT = 0, PALPATE_BOUNDS_PAPER = 1 };
-enum { PALPATE_BY_DEVIATION = 0, PALPATE_NEAREST = 1, PALPATE_BY_RATIO = 2 };
+enum { PALPATE_BY_DEVIATION = 0, PALPATE_NEAREST = 1, PALPATE_BY_RATIO = 2, PALPATE_BY_FORCE = 3 };
 
 /* Start from palpate_default_settings(): fields are only ever added. */
 typedef struct palpate_settings {

@@ -64,7 +64,7 @@ Limits limits_of(const palpate_limits& from) noexcept {
 /// False where an enumeration is out of range.
 bool settings_of(const palpate_settings& from, Settings& out) noexcept {
   if (from.engine > PALPATE_REGIONS || from.exact > 1 || from.interpolate > 1 ||
-      from.bounds > PALPATE_BOUNDS_PAPER || from.order > PALPATE_BY_RATIO ||
+      from.bounds > PALPATE_BOUNDS_PAPER || from.order > PALPATE_BY_FORCE ||
       from.front_tracking > 1 || from.motion_bounds > 1 || from.root_short_cut > 1 ||
       from.stop_on_surface > 1 || from.contact_dive > 1) {
     return false;

@@ -53,6 +53,9 @@ enum class Order : std::uint8_t {
   deviation,  ///< the largest weighted surface deviation s* (the paper's time-critical mode)
   nearest,    ///< the least distance
   ratio,      ///< the largest s* over distance
+  /// What can still change the force most, where contacts are those of the original surfaces:
+  /// `exact`, `contact_dive` and s0 = 0 under a budget (levels/by_force.hpp); else as `deviation`.
+  force,
 };
 
 /// How contacts are found and turned into forces.
@@ -67,7 +70,8 @@ struct Settings {
   double kappa = std::numeric_limits<double>::infinity();
   bool exact = false;  ///< refine every pair below delta to the original surface, whatever s0 says
   Bounds bounds = Bounds::tight;
-  Order order = Order::deviation;  ///< exact queries always go nearest first
+  /// With any but `force` exact queries go nearest first. Without a budget it changes nothing.
+  Order order = Order::force;
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
   /// Give contacts of simplified pieces the least distance of the original surfaces below them,
   /// instead of their own (the paper's): the force then hardly depends on the level. Costs about as

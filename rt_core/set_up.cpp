@@ -15,7 +15,7 @@ bool at_least(double v, double least) noexcept { return v >= least; }  // false 
 
 bool sound(const Settings& s) noexcept {
   return finite(s.delta_m) && s.delta_m > 0 && finite(s.s0) && at_least(s.s0, 0) &&
-         at_least(s.kappa, 0) && s.bounds <= Bounds::paper && s.order <= Order::ratio &&
+         at_least(s.kappa, 0) && s.bounds <= Bounds::paper && s.order <= Order::force &&
          finite(s.stiffness_N_per_m) && at_least(s.stiffness_N_per_m, 0) &&
          finite(s.cluster_radius_m) && at_least(s.cluster_radius_m, 0) &&
          finite(s.force_tolerance_N) && at_least(s.force_tolerance_N, 0) &&
@@ -50,6 +50,7 @@ struct Layout {
   std::span<levels::Node> nodes;
   std::span<std::uint32_t> front, blending, stopped;
   std::span<levels::Waiting> waiting;
+  std::span<levels::OpenPair> open;
   std::span<convex::PenetrationScratch> scratch;
   // Regions engine.
   std::span<regions::PairFrame> frames;
@@ -72,6 +73,7 @@ void lay_out_levels(Arena& arena, const Limits& limits, Layout& out) noexcept {
   out.blending = arena.array<std::uint32_t>(limits.nodes);
   out.waiting = arena.array<levels::Waiting>(limits.nodes);
   out.stopped = arena.array<std::uint32_t>(limits.nodes);
+  out.open = arena.array<levels::OpenPair>(levels::kMaxOpenPairs);
   out.scratch = arena.array<convex::PenetrationScratch>(1);
 }
 
@@ -132,6 +134,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.levels.tree.attach(layout.nodes, layout.front, layout.blending);
   e.levels.waiting = layout.waiting;
   e.levels.stopped = layout.stopped;
+  e.levels.open = layout.open;
   e.levels.scratch = layout.scratch.data();
   e.regions.kernels = &regions::best_kernels();
   e.regions.frames = layout.frames;

@@ -8,12 +8,14 @@ using image::Piece;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A pair of pieces whose bound has been asked for.
-struct Open {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
-  double lower = 0;
-};
+/// In the order of forces one search may not take what others need: where it does not come to its
+/// end the node is split, and what has been found is built upon in the next tick.
+std::uint64_t most_queries(const Work& work) noexcept {
+  if (!work.by_force) return kMaxDiveQueries;
+  std::uint64_t share = work.meter.queries_left() / kDivesShare;
+  share = share > kLeastDiveQueries ? share : kLeastDiveQueries;
+  return share < kMaxDiveQueries ? share : kMaxDiveQueries;
+}
 
 /// One search below one node.
 class Search {
@@ -23,7 +25,7 @@ class Search {
         top_(top),
         pair_(work.pair_of(top)),
         reach_(pair_.delta),
-        end_(work.probe.queries() + kMaxDiveQueries) {}
+        end_(work.probe.queries() + most_queries(work)) {}
 
   /// Nothing from `distance` on is of interest.
   void limit(double distance) noexcept {
@@ -43,7 +45,8 @@ class Search {
                      work_.meter.queries_left(), *work_.memory.scratch);
     work_.probe.charge_parts(contact.queries);
     if (contact.interrupted) complete_ = false;
-    if (!contact.found) return;
+    // A witness on a virtual face gives no contact now, but may slide off that face.
+    if (!contact.found) return lower(d.lower_bound);
     if (original) lower(contact.lower_bound);
     if (contact.distance >= reach_) return;
     best_ = contact;
@@ -58,11 +61,11 @@ class Search {
     if (is_leaf(top_.piece_a, top_.piece_b)) {
       measure_leaf(top_.piece_a, top_.piece_b);
     } else {
-      open_[size_++] = {top_.piece_a, top_.piece_b, -kInfinity};
+      work_.memory.open[size_++] = {top_.piece_a, top_.piece_b, -kInfinity};
     }
     while (size_ > 0) {
       if (work_.probe.queries() >= end_ || work_.out_of_budget()) break;
-      const Open next = open_[--size_];
+      const OpenPair next = work_.memory.open[--size_];
       if (next.lower < wanted()) expand(next);
     }
     if (size_ > 0) complete_ = false;
@@ -111,7 +114,7 @@ class Search {
 
   /// The larger piece gives way to its children. Those that are left are opened so that the nearest
   /// is next.
-  void expand(const Open& from) noexcept {
+  void expand(const OpenPair& from) noexcept {
     const Piece& a = pair_.image_a->pieces[from.a];
     const Piece& b = pair_.image_b->pieces[from.b];
     const bool larger_a = pair_.scale_a * static_cast<double>(a.radius) >=
@@ -138,16 +141,16 @@ class Search {
     }
   }
 
-  void open(const Open& item, std::uint32_t first) noexcept {
+  void open(const OpenPair& item, std::uint32_t first) noexcept {
     if (item.lower >= wanted()) return;
     if (size_ == kMaxOpenPairs) {
       complete_ = false;
       return;
     }
     std::uint32_t hole = size_++;
-    for (; hole > first && open_[hole - 1].lower < item.lower; --hole)
-      open_[hole] = open_[hole - 1];
-    open_[hole] = item;
+    for (; hole > first && work_.memory.open[hole - 1].lower < item.lower; --hole)
+      work_.memory.open[hole] = work_.memory.open[hole - 1];
+    work_.memory.open[hole] = item;
   }
 
   Work& work_;
@@ -161,13 +164,15 @@ class Search {
   std::uint32_t leaf_b_ = kNone;
   bool complete_ = false;
   std::uint32_t size_ = 0;
-  Open open_[kMaxOpenPairs];
 };
 
 /// Keeps what a search has found and proved, and reports it.
 void conclude(Work& work, Node& node, const Search& search) noexcept {
   const PairState& pair = work.pair_of(node);
-  if (search.complete()) prove(pair, node, search.proved());
+  if (search.complete()) {
+    prove(pair, node, search.proved());
+    set(node, kSearched);
+  }
   if (search.found()) {
     search.keep_in(node);
     work.note_cap(pair, search.contact());
@@ -175,37 +180,6 @@ void conclude(Work& work, Node& node, const Search& search) noexcept {
   } else if (search.complete() && !has_dived(node)) {
     node.contact = 0;  // that of the simplified pieces is none
   }
-}
-
-/// Nothing below the node is nearer than what it keeps, or delta, by more than kDiveLoose.
-bool is_known(const PairState& pair, const Node& node) noexcept {
-  const double known = has_dived(node) ? remeasured(pair, node).distance : pair.delta;
-  return certain_now(pair, node) >= known - kDiveLoose * pair.delta;
-}
-
-/// The contact of the last tick's pieces, else of those that a search finds.
-void find(Work& work, Node& node) noexcept {
-  set(node, kDived);
-  if (!has_dived(node) && is_known(work.pair_of(node), node)) {
-    node.contact = 0;
-    return;
-  }
-  Search search(work, node);
-  if (has_dived(node)) search.measure_leaf(node.leaf_a, node.leaf_b);
-  if (!search.found()) {
-    search.run();
-    if (search.complete()) node.contact = 0;
-  }
-  conclude(work, node, search);
-}
-
-/// Searches for a nearer one, unless what is kept will do.
-void improve(Work& work, Node& node) noexcept {
-  if (is_known(work.pair_of(node), node)) return;
-  Search search(work, node);
-  if (has_dived(node)) search.limit(remeasured(work.pair_of(node), node).distance);
-  search.run();
-  conclude(work, node, search);
 }
 
 /// Calls a function with every node that may dive, while the budget lasts.
@@ -222,6 +196,34 @@ void for_each(Work& work, Visit visit) noexcept {
 }
 
 }  // namespace
+
+bool is_known(const PairState& pair, const Node& node) noexcept {
+  const double known = has_dived(node) ? remeasured(pair, node).distance : pair.delta;
+  return certain_now(pair, node) >= known - kDiveLoose * pair.delta;
+}
+
+void find(Work& work, Node& node) noexcept {
+  set(node, kDived);
+  if (!has_dived(node) && is_known(work.pair_of(node), node)) {
+    node.contact = 0;
+    return;
+  }
+  Search search(work, node);
+  if (has_dived(node)) search.measure_leaf(node.leaf_a, node.leaf_b);
+  if (!search.found()) {
+    search.run();
+    if (search.complete()) node.contact = 0;
+  }
+  conclude(work, node, search);
+}
+
+void improve(Work& work, Node& node) noexcept {
+  if (is_known(work.pair_of(node), node)) return;
+  Search search(work, node);
+  if (has_dived(node)) search.limit(remeasured(work.pair_of(node), node).distance);
+  search.run();
+  conclude(work, node, search);
+}
 
 void dive(Work& work) noexcept {
   if (!work.rules.contact_dive) return;

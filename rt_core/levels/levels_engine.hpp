@@ -18,12 +18,22 @@
 
 namespace palpate::levels {
 
+/// A pair of pieces that a dive has open (dive.hpp).
+struct OpenPair {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  double lower = 0;  ///< nothing below it is nearer, in units
+};
+/// Pairs that a dive has open, at most.
+inline constexpr std::uint32_t kMaxOpenPairs = 64;
+
 /// Memory of the query, borrowed from the engine.
 struct QueryMemory {
   std::span<PairState> pairs;
   TestTree tree;
   std::span<Waiting> waiting;        ///< [nodes]
   std::span<std::uint32_t> stopped;  ///< [nodes]; those that refinement stopped at in this tick
+  std::span<OpenPair> open;          ///< [kMaxOpenPairs]
   std::span<Contact> contacts;       ///< [limits.contacts]
   convex::PenetrationScratch* scratch = nullptr;
   std::size_t raise_next = 0;  ///< where in the front raising goes on

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/refine.hpp"
 
+#include "rt_core/levels/by_force.hpp"
+#include "rt_core/levels/dive.hpp"
 #include "rt_core/levels/interpolate.hpp"
 #include "rt_core/levels/leaf_contact.hpp"
 #include "rt_core/levels/start.hpp"
@@ -20,7 +22,8 @@ void wait_for_split(Work& work, std::uint32_t index) noexcept {
   const Node& node = work.tree[index];
   const PairState& pair = work.pair_of(node);
   const double certain = certain_now(pair, node);
-  work.wait({rank(work, node, certain), certain * pair.unit_m, index, true});
+  const double order = work.by_force ? force_rank(work, node) : rank(work, node, certain);
+  work.wait({order, certain * pair.unit_m, index, true});
 }
 
 bool is_below(const ImageView& image, std::uint32_t piece, std::uint32_t top) noexcept {
@@ -41,6 +44,8 @@ void inherit(const PairState& pair, const Node& parent, Node& child) noexcept {
   }
   child.s_star = parent.s_star;
 }
+
+}  // namespace
 
 void split(Work& work, std::uint32_t index) noexcept {
   Node& parent = work.tree[index];
@@ -68,6 +73,8 @@ void split(Work& work, std::uint32_t index) noexcept {
   }
 }
 
+namespace {
+
 void stop(Work& work, std::uint32_t index) noexcept { work.stopped.add(work.tree[index], index); }
 
 void stop_on_surface(Work& work, std::uint32_t index, const LeafContact& contact) noexcept {
@@ -75,6 +82,13 @@ void stop_on_surface(Work& work, std::uint32_t index, const LeafContact& contact
   keep_on_surface(work.pair_of(node), node, contact);
   work.add_contact(node, contact);
   stop(work, index);
+}
+
+/// A dive has shown that the original surfaces below the node are not within delta: what the
+/// simplified ones give is none.
+bool found_nothing(const PairState& pair, const Node& node) noexcept {
+  if (has_dived(node) || (node.flags & kDived) == 0) return false;
+  return (node.flags & kSearched) != 0 || is_known(pair, node);
 }
 
 /// Keeps the contact of two pieces in the node, and reports it where refinement stops here and does
@@ -86,6 +100,7 @@ LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops)
       remeasured(work.pair_of(node), node).distance < work.pair_of(node).delta)
     return {};
   const PairState& pair = work.pair_of(node);
+  if (dives && found_nothing(pair, node)) return {};
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
   const LeafContact contact = leaf_contact(pair, a, b, d, node.own, pair.delta,
@@ -102,6 +117,10 @@ LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops)
   work.note_cap(pair, contact);
   if (contact.distance >= pair.delta) return contact;
   keep(pair, a, b, contact, node);
+  if (original && work.by_force) {  // only the child that holds it may inherit it
+    node.leaf_a = node.piece_a;
+    node.leaf_b = node.piece_b;
+  }
   if (stops && !dives) work.add_contact(node, contact);
   return contact;
 }
@@ -174,6 +193,8 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
   }
 }
 
+}  // namespace
+
 void measure(Work& work, std::uint32_t index) noexcept {
   Node& node = work.tree[index];
   const PairState& pair = work.pair_of(node);
@@ -185,8 +206,6 @@ void measure(Work& work, std::uint32_t index) noexcept {
     measure_metric(work, index);
   }
 }
-
-}  // namespace
 
 void refine(Work& work) noexcept {
   while (!work.waiting.empty() && !work.out_of_budget()) {

@@ -17,4 +17,12 @@ namespace palpate::levels {
 /// split. What is still on the queue afterwards is not resolved.
 void refine(Work& work) noexcept;
 
+/// Replaces a front node by the pairs of the children of the piece that its flags say, and puts the
+/// near ones on the queue. Where memory does not do for them the node is left as it is.
+void split(Work& work, std::uint32_t index) noexcept;
+
+/// Measures a near front node: it rests, waits for its split, or stops. A query or two, and those
+/// of open patches.
+void measure(Work& work, std::uint32_t index) noexcept;
+
 }  // namespace palpate::levels

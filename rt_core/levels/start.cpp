@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/start.hpp"
 
+#include "rt_core/levels/by_force.hpp"
+
 namespace palpate::levels {
 namespace {
 
@@ -14,6 +16,9 @@ constexpr double kSphereRounding = 1e-9;
 /// The front may be this much larger than what the budget is expected to measure: the estimate
 /// wavers, and a front that is cut back every other tick would be felt.
 constexpr double kFrontOverBudget = 1.25;
+/// With Work::by_force it may be larger by this: a contact that is kept costs no query, but time to
+/// measure it again at its points.
+constexpr double kKeptOverBudget = 8;
 /// The front's nodes lie anywhere in the pool: this many are on their way from memory.
 constexpr std::size_t kAhead = 8;
 
@@ -105,7 +110,8 @@ bool is_affordable(const Work& work, double most) noexcept {
 }
 
 void cut_back(Work& work) noexcept {
-  const double most = kFrontOverBudget * work.meter.queries_affordable(work.memory.query_ns);
+  const double most = (work.by_force ? kKeptOverBudget : kFrontOverBudget) *
+                      work.meter.queries_affordable(work.memory.query_ns);
   if (is_affordable(work, most)) return;
   carry_contacts_up(work);
   for (std::uint32_t round = 0; round < 2 * image::kMaxLevels; ++round) {
@@ -137,9 +143,11 @@ void wait_if_near(Work& work, std::uint32_t index) noexcept {
   const Node& node = work.tree[index];
   if (!work.is_near(node)) return;
   const PairState& pair = work.pair_of(node);
-  const bool later = work.only_culls(node);
   const double certain = certain_now(pair, node);
-  work.wait({later ? rank(work, node, certain) : certain, certain * pair.unit_m, index, later});
+  const bool later = work.only_culls(node);
+  double order = certain;
+  if (later) order = work.by_force ? force_rank(work, node) : rank(work, node, certain);
+  work.wait({order, certain * pair.unit_m, index, later});
 }
 
 double rank(const Work& work, const Node& node, double lower) noexcept {
@@ -147,7 +155,7 @@ double rank(const Work& work, const Node& node, double lower) noexcept {
   // What is missing counts for no more than what the parent missed: refinement has an order.
   const float of_parent = node.parent == kNone ? node.s_star : work.tree[node.parent].s_star;
   const double s = static_cast<double>(node.s_star < of_parent ? node.s_star : of_parent);
-  if (work.rules.order == Order::deviation) return -s;
+  if (work.rules.order != Order::ratio) return -s;
   constexpr double kLeastDistance = 1e-9;
   return -s / (lower > kLeastDistance ? lower : kLeastDistance);
 }

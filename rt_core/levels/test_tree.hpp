@@ -20,7 +20,10 @@ inline constexpr std::uint8_t kRefineA = 4;  ///< this tick: near, and a is to b
 inline constexpr std::uint8_t kRefineB = 8;
 inline constexpr std::uint8_t kDived =
     16;  ///< this tick: has looked for a contact of original pieces
-inline constexpr std::uint8_t kOfThisTick = kMeasured | kStopped | kRefineA | kRefineB | kDived;
+inline constexpr std::uint8_t kImproved = 32;  ///< this tick: has looked for a nearer one
+inline constexpr std::uint8_t kSearched = 64;  ///< this tick: a search below it came to its end
+inline constexpr std::uint8_t kBounded = 128;  ///< this tick: its culling hulls have been asked
+inline constexpr std::uint8_t kOfThisTick = 255;
 
 /// A pair of pieces and what is known of their distance. Lengths are in the unit of the body pair.
 struct alignas(64) Node {

@@ -18,6 +18,9 @@ inline bool is_simplified(const image::Piece& piece) noexcept {
   return piece.surface_deviation > 0 || piece.hausdorff > 0;
 }
 
+/// No budget of so few queries pays for a search: refinement gets them all.
+inline constexpr std::uint32_t kTooFewToSearch = 8;
+
 struct Work {
   Work(QueryMemory& query_memory, const Rules& query_rules, Meter& query_meter, Tally& query_tally,
        Discipline discipline) noexcept
@@ -26,6 +29,8 @@ struct Work {
         rules(query_rules),
         meter(query_meter),
         tally(query_tally),
+        by_force(query_rules.order == Order::force && query_meter.limited() &&
+                 query_rules.contact_dive && query_meter.queries_left() > kTooFewToSearch),
         probe(query_rules, query_meter, query_tally, discipline),
         report(query_memory.contacts),
         waiting(query_memory.waiting, discipline),
@@ -80,6 +85,9 @@ struct Work {
   const Rules& rules;
   Meter& meter;
   Tally& tally;
+  /// Refined in the order of forces: where the budget may end a query for contacts of the original
+  /// surfaces.
+  bool by_force;
   Probe probe;
   Report report;
   WaitQueue waiting;
