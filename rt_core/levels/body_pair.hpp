@@ -7,7 +7,6 @@
 #include "rt_core/convex/hull.hpp"
 #include "rt_core/geometry/pose.hpp"
 #include "rt_core/image/view.hpp"
-#include "rt_core/levels/nearest_by_axis.hpp"
 
 namespace palpate::levels {
 
@@ -31,7 +30,7 @@ struct PairState {
   double delta = 0;     ///< contact tolerance
   bool placed = false;  ///< a pose has been set before
   bool fresh = true;    ///< nothing is proved yet at any pose
-  NearestByAxis felt;   ///< contacts so far (levels engine)
+  double nearest = 0;   ///< least distance of the contacts so far, or delta (levels engine)
 
   // Odometers: how far a has moved relative to b, in all ticks. A point of a at distance x from its
   // centre has moved at most travel + turn * x since both were zero.

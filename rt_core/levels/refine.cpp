@@ -127,11 +127,11 @@ LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops)
 
 /// No detail is missing, but what there is of it gives no contact where there may be one: a cut
 /// through several levels has gaps between pieces whose surfaces end elsewhere at each of them.
-/// Refined on, unless what pushes the same way is nearer anyway.
+/// Refined on, unless a contact is nearer anyway.
 void refine_hidden(const Work& work, const Node& node, const convex::Distance& d,
                    const LeafContact& contact, Detail& missing) noexcept {
   const PairState& pair = work.pair_of(node);
-  if (work.dives(node) || pair.felt.is_nearer(d.normal, d.distance)) return;
+  if (work.dives(node) || pair.nearest <= d.distance) return;
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
   missing.refine_a = contact.hidden_a && is_simplified(a) && a.children != 0;

@@ -48,7 +48,7 @@ void rise_if_apart(Work& work, PairState& pair) noexcept {
 }
 
 void place(Work& work, PairState& pair) noexcept {
-  pair.felt.clear(pair.delta);
+  pair.nearest = pair.delta;
   const Node& root = work.tree[pair.root];
   const bool apart = sphere_distance(pair, piece_a(pair, root), piece_b(pair, root)) >= pair.delta;
   if (pair.fresh || apart || !work.rules.front_tracking || jumped(pair)) {

@@ -68,7 +68,7 @@ void Work::note_cap(const PairState& pair, const LeafContact& contact) noexcept 
 void Work::add_contact(Node& node, const LeafContact& contact) noexcept {
   PairState& pair = pair_of(node);
   if (contact.distance >= pair.delta) return;
-  pair.felt.note(contact.normal, contact.distance);
+  if (contact.distance < pair.nearest) pair.nearest = contact.distance;
   if (node.report != kNone) return report.replace(pair, node, contact);
   if (report.add(pair, node, contact)) return meter.expect_contacts(report.count());
   result.truncated_by_memory = true;
