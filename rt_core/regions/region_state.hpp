@@ -6,6 +6,7 @@
 
 #include "rt_core/levels/body_pair.hpp"
 #include "rt_core/regions/near_pairs.hpp"
+#include "rt_core/regions/seeds.hpp"
 
 namespace palpate::regions {
 
@@ -25,6 +26,7 @@ struct RegionState {
   double turn_at = 0;    ///< PairState::turn
   Witness witness;       ///< its distance is of the last tick it was measured in
   NearPairs near;
+  Seeds seeds;
 };
 
 /// How far any point of a region has moved against b since the proof, at most: the displacement of

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "rt_core/base/queue.hpp"
+#include "rt_core/regions/follow.hpp"
 #include "rt_core/regions/report.hpp"
 
 namespace palpate::regions {
@@ -28,6 +29,20 @@ constexpr float kLastStep = 0.1f;
 /// Where an interval may stay open, a search leaves this share of that to motion, unless it is
 /// fast.
 constexpr float kRestShare = 0.75f;
+/// Under a budget, searches do not keep up where those of the intervals wider than a share of delta
+/// would take so many ticks; asked when so many searches have told what they take, and again every
+/// few steps.
+constexpr float kWide = 0.1f;
+constexpr double kManyTicks = 10;
+constexpr std::uint32_t kFewSearches = 4;
+constexpr std::uint32_t kStepsPerLook = 4;
+/// Then following takes this share of what is left, the larger where it brings witnesses nearer
+/// for the same work than searches do: by half as much, for it also keeps them there.
+constexpr double kMostFollow = 0.85;
+constexpr double kLeastFollow = 0.05;
+constexpr double kFollowWorth = 2;
+/// In a tick, all regions together, in contact tolerances: less is what witnesses waver by.
+constexpr double kLeastGain = 0.006;
 /// Neighbours of a witness farther than this many delta are not looked at.
 constexpr float kClimbReach = 2;
 /// Below this an interval is closed: rounding leaves as much.
@@ -52,6 +67,7 @@ class Query {
     measure_near_pairs();
     for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) settle_side(i);
     refine();
+    learn_time();
     for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) find_way_out(i);
     meter_.begin_tail();
     certify();
@@ -86,6 +102,7 @@ class Query {
     const double far = kJumpDelta * pair.delta > kJump ? kJumpDelta * pair.delta : kJump;
     if (!pair.fresh && last_motion(pair) <= far) return;
     pair.fresh = false;
+    swept_ = true;
     memory_.containment[index].doubtful = true;
     const std::span<float> swept = memory_.swept.first(pair.image_a->regions.size());
     sweep(*memory_.kernels, memory_.frames[index], *memory_.search, pace_,
@@ -93,6 +110,7 @@ class Query {
     for (std::uint32_t i = 0; i < swept.size(); ++i) {
       RegionState& state = memory_.states[memory_.first_state[index] + i];
       state.near.count = 0;
+      state.seeds.count = 0;
       prove(state, pair, i, sqrt_of(swept[i]) - kRounding);
     }
   }
@@ -174,10 +192,10 @@ class Query {
 
   void measure_soon(std::uint32_t index, const Witness& pair) noexcept {
     if (pending_ == kBatch ||
-        (pending_ > 0 && active()[pending_of_[0]].pair != active()[index].pair)) {
+        (pending_ > 0 && active()[memory_.search->batch_of[0]].pair != active()[index].pair)) {
       flush();
     }
-    pending_of_[pending_] = index;
+    memory_.search->batch_of[pending_] = index;
     memory_.search->batch_a[pending_] = pair.a;
     memory_.search->batch_b[pending_] = pair.b;
     ++pending_;
@@ -187,10 +205,10 @@ class Query {
     if (pending_ == 0) return;
     float distances[kBatch];
     SearchScratch& scratch = *memory_.search;
-    const PairFrame& frame = frame_of_item(active()[pending_of_[0]]);
+    const PairFrame& frame = frame_of_item(active()[scratch.batch_of[0]]);
     measure(*memory_.kernels, frame, scratch, pace_, pending_, distances);
     for (std::uint32_t i = 0; i < pending_; ++i) {
-      Witness& witness = state_of(active()[pending_of_[i]]).witness;
+      Witness& witness = state_of(active()[scratch.batch_of[i]]).witness;
       if (distances[i] < witness.distance) {
         witness = {scratch.batch_a[i], scratch.batch_b[i], distances[i]};
       }
@@ -278,6 +296,11 @@ class Query {
     memory_.active[count_++] = {.rest = rest, .state = state, .region = region, .pair = index};
   }
 
+  void learn_time() noexcept {
+    const std::uint64_t used = pace_.used();
+    if (used > 0) palpate::follow(memory_.pursuit.unit_ns, meter_.elapsed_ns() / used);
+  }
+
   void refine() noexcept {
     if (demand_.limited || demand_.tolerance_m > 0) {
       refine_widest_first();
@@ -287,6 +310,33 @@ class Query {
   }
 
   void refine_widest_first() noexcept {
+    const double share_m = count_ > 0 ? demand_.tolerance_m / count_ : 0;
+    narrow_widest(share_m, demand_.limited && !swept_);
+    if (lags_) {
+      follow_witnesses();
+      narrow_widest(share_m, false);
+    }
+    memory_.pursuit.search.fade();
+    memory_.pursuit.follow.fade();
+    if (!truncated_) decide_crossings(share_m);
+  }
+
+  /// For most of the budget where that brings witnesses nearer, else for as much as it takes to
+  /// see when it does.
+  void follow_witnesses() noexcept {
+    const Yield& by_search = memory_.pursuit.search;
+    const Yield& by_follow = memory_.pursuit.follow;
+    const double units = affordable();
+    const bool worthwhile = by_follow.gain * units > kLeastGain * by_follow.units;
+    const bool better = worthwhile && kFollowWorth * by_follow.gain * by_search.units >
+                                          by_search.gain * by_follow.units;
+    follow(memory_, active(), (better ? kMostFollow : kLeastFollow) * units, pace_);
+    for (Active& item : active()) widen(item);
+  }
+
+  /// Until the open intervals are within the tolerance or the budget ends.
+  /// @param may_lag  or until it shows that searches do not keep up
+  void narrow_widest(double share_m, bool may_lag) noexcept {
     MinQueue<std::uint32_t, Wider> queue(memory_.queue, Wider{active()});
     double open_m = 0;
     std::uint64_t felt = 0;
@@ -296,11 +346,11 @@ class Query {
       queue.push(i);
     }
     meter_.expect_contacts(felt);
-    const double share_m = count_ > 0 ? demand_.tolerance_m / count_ : 0;
-    while (!queue.empty() && open_m > demand_.tolerance_m) {
+    for (std::uint32_t step = 0; !queue.empty() && open_m > demand_.tolerance_m; ++step) {
       const std::uint32_t index = queue.top();
-      queue.pop();
       Active& item = active()[index];
+      if (may_lag && step % kStepsPerLook == 0 && lags()) return;
+      queue.pop();
       if (item.width <= kClosed) break;
       open_m -= width_m(item);
       const bool felt_before = is_felt(item);
@@ -310,8 +360,21 @@ class Query {
       if (truncated_) return;
       queue.push(index);
     }
-    decide_crossings(share_m);
   }
+
+  /// Searches of all wide intervals take many times what the tick has left.
+  bool lags() noexcept {
+    if (memory_.pursuit.searches < kFewSearches) return false;
+    std::uint32_t wide = 0;
+    for (const Active& item : active()) {
+      wide += item.width > kWide * static_cast<float>(pair_of(item).delta) ? 1u : 0u;
+    }
+    lags_ = wide * memory_.pursuit.search_units > kManyTicks * affordable();
+    return lags_;
+  }
+
+  /// Work units that the tick has left, about.
+  double affordable() const noexcept { return meter_.queries_affordable(memory_.pursuit.unit_ns); }
 
   /// An interval may stay open by this much, but not down to zero: what crosses has a depth, of
   /// which the interval says nothing.
@@ -370,9 +433,18 @@ class Query {
     RegionState& state = state_of(item);
     const Reach reach{static_cast<float>(pair.delta) + kClosed, margin_within(item, tolerance),
                       first};
+    const std::uint64_t before = pace_.used();
+    const bool known = state.witness.known();
+    const float upper = upper_of(item);
     const Bounds found = search(*memory_.kernels, frame_of_item(item), *memory_.search, pace_,
                                 item.region, state.witness, reach);
+    const auto spent = static_cast<double>(pace_.used() - before);
+    if (!first && found.complete) memory_.pursuit.learn_search(spent);
     state.witness = found.best;
+    if (known) {
+      const auto nearer = static_cast<double>(upper - upper_of(item));
+      memory_.pursuit.search.add(nearer / pair.delta, spent);
+    }
     truncated_ |= !found.complete && !pace_.go_on();
     if (found.rest > item.rest) {
       item.rest = found.rest;
@@ -417,8 +489,9 @@ class Query {
   Pace pace_;
   std::uint32_t count_ = 0;  // of active regions
   std::uint32_t pending_ = 0;
-  std::uint32_t pending_of_[kBatch];  // which active region a pair to be measured belongs to
   bool truncated_ = false;
+  bool lags_ = false;   // searches do not keep up
+  bool swept_ = false;  // in this tick
   QueryResult result_;
 };
 

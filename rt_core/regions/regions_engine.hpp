@@ -16,6 +16,7 @@
 #include "rt_core/regions/containment.hpp"
 #include "rt_core/regions/crossing.hpp"
 #include "rt_core/regions/kernels.hpp"
+#include "rt_core/regions/pursuit.hpp"
 #include "rt_core/regions/region_state.hpp"
 #include "rt_core/regions/search.hpp"
 #include "rt_core/regions/sweep.hpp"
@@ -47,6 +48,7 @@ struct QueryMemory {
   std::span<Contact> contacts;           ///< [limits.contacts]
   SearchScratch* search = nullptr;
   CrossingScratch* crossing = nullptr;
+  Pursuit pursuit;
 };
 
 /// What a query found.

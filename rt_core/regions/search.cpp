@@ -31,6 +31,30 @@ std::uint32_t evaluate(const Kernels& kernels, const PairFrame& frame, SearchScr
   return crossing;
 }
 
+/// Of a box.
+struct Centre {
+  float x, y, z;
+};
+
+Centre centre_in(const Box& box, const Transform& map) noexcept {
+  const float* r = map.rotation;
+  const float* t = map.translation;
+  const float x = box.x[3];
+  const float y = box.y[3];
+  const float z = box.z[3];
+  return {map.scale * (r[0] * x + r[1] * y + r[2] * z) + t[0],
+          map.scale * (r[3] * x + r[4] * y + r[5] * z) + t[1],
+          map.scale * (r[6] * x + r[7] * y + r[8] * z) + t[2]};
+}
+
+/// Of a centre and that of a child.
+float apart_squared(const Centre& centre, const RegionNode& node, std::uint32_t slot) noexcept {
+  const float x = node.centre[0][slot] - centre.x;
+  const float y = node.centre[1][slot] - centre.y;
+  const float z = node.centre[2][slot] - centre.z;
+  return x * x + y * y + z * z;
+}
+
 class Search {
  public:
   Search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
@@ -165,28 +189,10 @@ class Search {
     nearest_to_top(bottom);
   }
 
-  struct Centre {
-    float x, y, z;
-  };
-
-  static Centre centre_in(const Box& box, const Transform& map) noexcept {
-    const float* r = map.rotation;
-    const float* t = map.translation;
-    const float x = box.x[3];
-    const float y = box.y[3];
-    const float z = box.z[3];
-    return {map.scale * (r[0] * x + r[1] * y + r[2] * z) + t[0],
-            map.scale * (r[3] * x + r[4] * y + r[5] * z) + t[1],
-            map.scale * (r[6] * x + r[7] * y + r[8] * z) + t[2]};
-  }
-
   /// Of the box looked at last and a child; asked for where the boxes overlap only.
   float centres(const RegionNode& node, std::uint32_t slot, float squared) const noexcept {
     if (squared > 0) return 0;
-    const float x = node.centre[0][slot] - centre_.x;
-    const float y = node.centre[1][slot] - centre_.y;
-    const float z = node.centre[2][slot] - centre_.z;
-    return x * x + y * y + z * z;
+    return apart_squared(centre_, node, slot);
   }
 
   static bool goes_first(const Candidate& p, const Candidate& q) noexcept {
@@ -338,7 +344,60 @@ void around_b(const ImageView& image, std::uint32_t t, std::uint32_t (&out)[4]) 
   for (std::uint32_t i = 0; i < 3; ++i) out[i + 1] = neighbour(image, t, i);
 }
 
+/// The nearest of a node's children, and of those that overlap the one whose centre is.
+std::uint32_t nearest_child(const Kernels& kernels, const Box& box, const Transform& to_node,
+                            const RegionNode& node, Pace& pace) noexcept {
+  pace.charge(1);
+  float squared[kBatch];
+  static_cast<void>(kernels.test_boxes(box, to_node, node, kFar, squared));
+  const Centre centre = centre_in(box, to_node);
+  std::uint32_t best = 0;
+  float best_apart = kFar;
+  for (std::uint32_t i = 0; i < node.children; ++i) {
+    if (squared[i] > squared[best]) continue;
+    const float apart = apart_squared(centre, node, i);
+    if (squared[i] < squared[best] || apart < best_apart) {
+      best = i;
+      best_apart = apart;
+    }
+  }
+  return best;
+}
+
+/// A leaf of a region as a child of the node above it.
+std::uint32_t leaf_of(const ImageView& image, const image::Region& region,
+                      std::uint32_t which) noexcept {
+  std::uint32_t name = child_name(region.parent, region.slot);
+  for (std::uint32_t depth = 0; depth < image::kMaxRegionDepth; ++depth) {
+    const std::uint32_t below = image.region_nodes[node_of(name)].first + slot_of(name);
+    const RegionNode& node = image.region_nodes[below];
+    if (node.leaf != 0) break;
+    name = child_name(below, which % node.children);
+    which /= node.children;
+  }
+  return name;
+}
+
 }  // namespace
+
+Witness dive(const Kernels& kernels, const PairFrame& frame, Pace& pace, std::uint32_t region,
+             std::uint32_t which) noexcept {
+  const std::uint32_t leaf = leaf_of(*frame.a, frame.a->regions[region], which);
+  const RegionNode& over_a = frame.a->region_nodes[node_of(leaf)];
+  const Box box = box_of(over_a, slot_of(leaf));
+  std::uint32_t node = 0;
+  std::uint32_t slot = 0;
+  for (std::uint32_t depth = 0; depth < image::kMaxRegionDepth; ++depth) {
+    const RegionNode& over_b = frame.b->region_nodes[node];
+    slot = nearest_child(kernels, box, frame.a_to_b, over_b, pace);
+    if (over_b.leaf != 0) break;
+    node = over_b.first + slot;
+  }
+  const RegionNode& over_b = frame.b->region_nodes[node];
+  const RegionNode& in_a = frame.a->region_nodes[over_a.first + slot_of(leaf)];
+  const std::uint32_t of_a = nearest_child(kernels, box_of(over_b, slot), frame.b_to_a, in_a, pace);
+  return {in_a.first + of_a, over_b.first + slot, 0};
+}
 
 void measure(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
              std::uint32_t count, float (&out_distances)[kBatch]) noexcept {

@@ -45,6 +45,7 @@ struct SearchScratch {
   std::uint32_t batch_a[kBatch];
   std::uint32_t batch_b[kBatch];
   float batch_squared[kBatch];
+  std::uint32_t batch_of[kBatch];  ///< the callers': which active region each is of
 };
 
 /// When a search has to end.
@@ -83,6 +84,13 @@ void measure(const Kernels& kernels, const PairFrame& frame, SearchScratch& scra
 inline constexpr std::uint32_t kMaxClimb = 3;
 void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
            Witness& witness) noexcept;
+
+/// A pair of triangles that may be near, in a part of a region: the box of one of its leaves, and
+/// down the other tree from nearest child to nearest child. Its distance is not measured.
+/// @param which  any number; those that follow each other lie apart
+/// Cost: a unit for each level of b's tree and one.
+Witness dive(const Kernels& kernels, const PairFrame& frame, Pace& pace, std::uint32_t region,
+             std::uint32_t which) noexcept;
 
 /// How far a search looks.
 struct Reach {

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs of triangles that lie apart: from one of them the nearest of a region comes next.
+#pragma once
+
+#include <cstdint>
+
+#include "rt_core/image/view.hpp"
+#include "rt_core/regions/near_pairs.hpp"
+
+namespace palpate::regions {
+
+/// How many are kept of a region. Where two dimpled surfaces fit each other, a region of eight
+/// contact tolerances has some fourteen places from which every step to a neighbour leads away.
+inline constexpr std::uint32_t kSeeds = 16;
+
+/// The nearest pairs met in different places of a region.
+///
+/// Surfaces that fit each other are nearly as near in many places. Which is the nearest changes
+/// with the direction of the motion, to one that lay far off and was never the nearest before; but
+/// each place moves little from tick to tick. Nothing is proved with seeds: they are measured
+/// before they count.
+struct Seeds {
+  std::uint32_t count = 0;
+  std::uint32_t dives = 0;  ///< so far (dive())
+  double travel_at = 0;     ///< PairState::travel ...
+  double turn_at = 0;       ///< ... and turn to which the distances have been lowered
+  Witness at[kSeeds];       ///< distance: when it was measured, less the motion since
+};
+
+/// Keeps a pair: instead of the seed in the same place where it is nearer than that, else where
+/// there is room, else instead of the farthest where it is nearer. The same place: a common
+/// triangle, or first corners closer together than an eighth of the region's radius. O(kSeeds)
+void note_seed(const ImageView& a, const Witness& pair, Seeds& seeds) noexcept;
+
+/// Takes a seed to another pair.
+/// @param index  below seeds.count
+void move_seed(const ImageView& a, std::uint32_t index, const Witness& to, Seeds& seeds) noexcept;
+
+}  // namespace palpate::regions
