@@ -55,7 +55,7 @@ const Case kCases[] = {
     {"regions, 100 units",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      100,
-     0xc44b20c1bbf89a3f},
+     0x2d5df3a2f102264a},
     {"regions, tolerance",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .force_tolerance_N = 3},
      kUnlimited,

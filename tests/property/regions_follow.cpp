@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Surfaces that fit each other, under budgets far too small to search them: bounds hold, and
+// witnesses come nearer from tick to tick all the same.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "host_bake/models/models.hpp"
+#include "rt_core/engine.hpp"
+#include "rt_core/regions/follow.hpp"
+#include "rt_core/workspace.hpp"
+#include "tests/support/baked_scene.hpp"
+
+namespace palpate::test {
+namespace {
+
+constexpr std::size_t kTriangles = 20000;
+constexpr double kDeltaRel = 0.02;
+constexpr int kTicks = 60;
+
+BakedBody baked(const char* model) {
+  bake::BakeOptions options = options_for(bake::ForEngine::regions);
+  options.delta_rel = kDeltaRel;
+  return {bake::make_model(model, kTriangles), options};
+}
+
+/// A golf ball in a shell that matches it.
+struct Bodies {
+  BakedBody ball = baked("golf_ball");
+  BakedBody shell = baked("golf_shell");
+};
+
+const Bodies& bodies() {
+  static const Bodies both;
+  return both;
+}
+
+double delta_m() { return kDeltaRel * bodies().ball.view.header->radius_m; }
+
+Settings settings() {
+  return {.engine = EngineKind::regions, .delta_m = delta_m(), .cluster_radius_m = delta_m()};
+}
+
+BakedScene scene() {
+  return {{bodies().ball.view, bodies().shell.view}, {{0, 1}}, settings(), {.contacts = 4096}};
+}
+
+/// Pressed in a direction that turns.
+Pose pressed(int tick) {
+  const double way = 0.2 * delta_m();
+  const double angle = 0.03 * tick;
+  return {{way * std::cos(angle), way * std::sin(angle), 0.3 * way * std::sin(0.5 * angle)}, {}};
+}
+
+TickResult tick_at(BakedScene& s, int tick, const Budget& budget = {}) {
+  const Pose poses[2] = {pressed(tick), {}};
+  return tick_or_fail(*s.engine, poses, budget);
+}
+
+/// Delta less the distance of each region that was near in a tick, in units; zero of the others.
+std::vector<double> depths(const BakedScene& s, const TickResult& tick) {
+  const regions::QueryMemory& memory = s.engine->regions;
+  std::vector<double> out(memory.states.size(), 0);
+  for (const regions::Active& item : memory.active.first(tick.front_nodes)) {
+    const regions::Witness& witness = memory.states[item.state].witness;
+    const double deep = memory.pairs[0].delta - static_cast<double>(witness.distance);
+    if (witness.known() && deep > 0) out[item.state] = deep;
+  }
+  return out;
+}
+
+double sum(const std::vector<double>& values) {
+  double out = 0;
+  for (const double v : values) out += v;
+  return out;
+}
+
+TEST(RegionsFollow, witnesses_are_never_nearer_than_the_truth_and_bounds_hold) {
+  for (const std::uint64_t units : {1000u, 3000u}) {
+    BakedScene exact = scene();
+    BakedScene followed = scene();
+    for (int i = 0; i < kTicks; ++i) {
+      const TickResult truth = tick_at(exact, i);
+      const TickResult r = tick_at(followed, i, {.units = units});
+      const std::vector<double> least = depths(exact, truth);
+      const std::vector<double> found = depths(followed, r);
+      for (std::size_t k = 0; k < least.size(); ++k) ASSERT_LE(found[k], least[k] + 2e-6) << k;
+      if (r.contacts.empty()) continue;
+      EXPECT_LE(std::abs(r.min_distance_m - truth.min_distance_m),
+                r.certificate.error_bound_m + 1e-6);
+      const double missing_N =
+          settings().stiffness_N_per_m * exact.engine->states[0].unit_m * (sum(least) - sum(found));
+      EXPECT_LE(missing_N, r.certificate.force_bound_N * (1 + 1e-6) + 0.05);
+    }
+    EXPECT_GT(followed.engine->regions.pursuit.round, 0u) << units;
+  }
+}
+
+Vec3d summed_force(const TickResult& r) {
+  Vec3d out{};
+  for (const Contact& c : r.contacts) {
+    out += (settings().stiffness_N_per_m * (delta_m() - c.distance_m)) * c.normal;
+  }
+  return out;
+}
+
+TEST(RegionsFollow, force_is_near_the_exact_one_at_a_fortieth_of_its_work) {
+  constexpr std::uint64_t kUnits = 2000;
+  constexpr int kAll = 3 * kTicks;
+  BakedScene exact = scene();
+  BakedScene followed = scene();
+  double error_N = 0;
+  double peak_N = 0;
+  std::uint64_t needed = 0;
+  for (int i = 0; i < kAll; ++i) {
+    const TickResult truth = tick_at(exact, i);
+    const TickResult r = tick_at(followed, i, {.units = kUnits});
+    needed += truth.queries;
+    peak_N = std::max(peak_N, norm(summed_force(truth)));
+    if (i >= kAll - kTicks) error_N += norm(summed_force(r) - summed_force(truth)) / kTicks;
+  }
+  EXPECT_GT(needed, 35 * kUnits * kAll);
+  EXPECT_LT(error_N, 0.2 * peak_N);  // searches alone: 0.56
+}
+
+TEST(RegionsFollow, a_copy_goes_on_with_the_same_bits) {
+  BakedScene one = scene();
+  for (int i = 0; i < kTicks; ++i) tick_at(one, i, {.units = 1000});
+  BakedScene other = scene();
+  std::memcpy(other.memory.data.get(), one.memory.data.get(), one.memory.size);
+  ASSERT_EQ(restore(other.scene(), {.contacts = 4096}, EngineKind::regions, other.memory.span(),
+                    other.engine),
+            Status::ok);
+  for (int i = kTicks; i < kTicks + 10; ++i) {
+    const TickResult r = tick_at(one, i, {.units = 1000});
+    const TickResult s = tick_at(other, i, {.units = 1000});
+    ASSERT_EQ(std::memcmp(&r.wrench, &s.wrench, sizeof r.wrench), 0);
+    ASSERT_EQ(r.queries, s.queries);
+  }
+}
+
+/// The state of a tick that has seen nothing but what is far, to follow from.
+TEST(RegionsFollow, units_are_kept_and_distances_are_of_the_present_pose) {
+  BakedScene s = scene();
+  for (int i = 0; i < 5; ++i) tick_at(s, i, {.units = 3000});
+  regions::QueryMemory& memory = s.engine->regions;
+  const auto scratch = std::make_unique<regions::SearchScratch>();
+  for (const double units : {0.0, 50.0, 500.0, 5000.0}) {
+    std::vector<regions::Active> active;
+    std::vector<regions::Witness> before;
+    for (std::uint32_t k = 0; k < memory.states.size(); ++k) {
+      if (!memory.states[k].witness.known()) continue;
+      active.push_back({.width = 1, .state = k, .region = k});
+      before.push_back(memory.states[k].witness);
+    }
+    Meter meter({}, {});
+    regions::Pace pace(meter);
+    regions::follow(memory, active, units, pace);
+    // A climb or a dive that has begun is finished, and so is a batch.
+    EXPECT_LE(static_cast<double>(pace.used()), units + 4.0 * regions::kBatchUnits);
+    for (std::size_t i = 0; i < active.size(); ++i) {
+      const regions::Witness& now = memory.states[active[i].state].witness;
+      EXPECT_LE(now.distance, before[i].distance);
+      EXPECT_EQ(s.bodies[0].region_triangles[now.a].region, active[i].region);
+      float distances[regions::kBatch];
+      scratch->batch_a[0] = now.a;
+      scratch->batch_b[0] = now.b;
+      regions::measure(*memory.kernels, memory.frames[0], *scratch, pace, 1, distances);
+      EXPECT_EQ(distances[0], now.distance);
+    }
+  }
+}
+
+TEST(RegionsFollow, dives_reach_every_leaf_of_a_region_at_the_cost_of_one_path) {
+  BakedScene s = scene();
+  tick_at(s, 0, {.units = 1000});
+  const regions::QueryMemory& memory = s.engine->regions;
+  const ImageView& ball = s.bodies[0];
+  for (std::uint32_t region = 0; region < ball.regions.size(); region += 7) {
+    std::set<std::uint32_t> leaves;
+    for (std::uint32_t i = 0; i < ball.region_nodes.size(); ++i) {
+      const image::RegionNode& node = ball.region_nodes[i];
+      if (node.leaf != 0 && node.region == region) leaves.insert(node.first);
+    }
+    std::set<std::uint32_t> reached;
+    for (std::uint32_t which = 0; which < 4096; ++which) {
+      Meter meter({}, {});
+      regions::Pace pace(meter);
+      const regions::Witness w =
+          regions::dive(*memory.kernels, memory.frames[0], pace, region, which);
+      ASSERT_EQ(ball.region_triangles[w.a].region, region);
+      ASSERT_LT(w.b, s.bodies[1].region_triangles.size());
+      ASSERT_LE(pace.used(), image::kMaxRegionDepth + 1);
+      reached.insert(*std::prev(leaves.upper_bound(w.a)));
+      if (reached.size() == leaves.size()) break;
+    }
+    EXPECT_EQ(reached.size(), leaves.size());
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test
