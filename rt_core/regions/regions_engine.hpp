@@ -48,7 +48,7 @@ struct QueryMemory {
   std::span<Contact> contacts;           ///< [limits.contacts]
   SearchScratch* search = nullptr;
   CrossingScratch* crossing = nullptr;
-  Pursuit pursuit;
+  Pursuit pursuit;  ///< from tick to tick
 };
 
 /// What a query found.
@@ -82,9 +82,10 @@ struct Demand {
 /// measured at the present poses and bound the distances from above. That is exact for as long as
 /// no other pair can have come as near; then the region is searched again (search.hpp), under a
 /// budget the widest interval first and closed in steps, after a cheap look at the witness's
-/// neighbours. Whatever ends it, every interval holds its distance, and every witness nearer than
-/// delta is a contact. Where triangles cross, the pieces that they belong to give the depth and
-/// the curve in which they do the direction (crossing.hpp).
+/// neighbours. A budget that is far too small for the searches goes to following the witnesses
+/// instead where that brings them nearer (follow.hpp). Whatever ends it, every interval holds its
+/// distance, and every witness nearer than delta is a contact. Where triangles cross, the pieces
+/// that they belong to give the depth and the curve in which they do the direction (crossing.hpp).
 ///
 /// A contact's pieces are those of level 0 that hold the witnesses. Cost: the budget, plus
 /// O(regions), plus one witness of each near region.
