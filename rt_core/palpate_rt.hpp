@@ -71,7 +71,7 @@ struct Settings {
   bool exact = false;  ///< refine every pair below delta to the original surface, whatever s0 says
   Bounds bounds = Bounds::tight;
   /// With any but `force` exact queries go nearest first. Without a budget it changes nothing.
-  Order order = Order::force;
+  Order order = Order::deviation;
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
   /// Give contacts of simplified pieces the least distance of the original surfaces below them,
   /// instead of their own (the paper's): the force then hardly depends on the level. Costs about as

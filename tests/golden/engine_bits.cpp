@@ -29,7 +29,11 @@ constexpr double kDelta_m = 0.05;
 constexpr std::uint64_t kUnlimited = Budget{}.units;
 const Case kCases[] = {
     {"exact", {.delta_m = kDelta_m, .exact = true}, kUnlimited, 0x92f7d7f247e93c49},
-    {"exact, 40 units", {.delta_m = kDelta_m, .exact = true}, 40, 0xcc0402d0d0758dd5},
+    {"exact, 40 units", {.delta_m = kDelta_m, .exact = true}, 40, 0x4e018b9ca1d6d976},
+    {"exact, 40 units, by force",
+     {.delta_m = kDelta_m, .exact = true, .order = Order::force},
+     40,
+     0xcc0402d0d0758dd5},
     {"simplified", {.delta_m = kDelta_m, .s0 = 0.02}, kUnlimited, 0x9d31ccac6af5dbcc},
     {"simplified, 40 units", {.delta_m = kDelta_m, .s0 = 0.02}, 40, 0x39427cce18d33c03},
     {"simplified, dives",
@@ -38,6 +42,10 @@ const Case kCases[] = {
      0x0661c7af141d467c},
     {"simplified, dives, 40 units",
      {.delta_m = kDelta_m, .s0 = 0.02, .contact_dive = true},
+     40,
+     0x9c75d7306bc07dc4},
+    {"simplified, dives, 40 units, by force",
+     {.delta_m = kDelta_m, .s0 = 0.02, .order = Order::force, .contact_dive = true},
      40,
      0xbb26a76bb398e884},
     {"stop on surface, by ratio",
