@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Work of the levels engine by setting and by budget, in counts: no clock is read.
 //
-//   bench_levels settings [TICKS [SCENE...]]   queries and front with each idea that saves pairs
-//   alone bench_levels budgets  [TICKS [SCENE...]]   accuracy against the budget in work units
-//   scenes: golf_on_golf, ellipsoid_on_golf, jaws; default: all
+//   bench_levels settings [TICKS [SCENE...]]   queries and front by setting
+//   bench_levels budgets  [TICKS [SCENE...]]   accuracy against the budget in work units
+//
+// Scenes: golf_on_golf, ellipsoid_on_golf, jaws; default: all.
 //
 // Rows are CSV, one for each scene, contact tolerance (share of the smaller radius) and setting.
 // front and queries are means over the ticks; force_nrmse is against exact ticks, of their largest
@@ -166,22 +167,22 @@ void by_settings(const Place& at, const Body& a, const Body& b, const std::vecto
 
 constexpr Variant kUnderBudget[] = {
     {"exact", [](Settings& s) { s.exact = true; }},
-    {"exact, order = deviation",
+    {"exact, order = force",
      [](Settings& s) {
        s.exact = true;
-       s.order = Order::deviation;
+       s.order = Order::force;
      }},
     {"s0 = 0", [](Settings& s) { s.s0 = 0; }},
-    {"s0 = 0, order = deviation",
+    {"s0 = 0, order = force",
      [](Settings& s) {
        s.s0 = 0;
-       s.order = Order::deviation;
+       s.order = Order::force;
      }},
     {"s0 = 0.025", [](Settings&) {}},
     {"s0 = 0.025, dives", [](Settings& s) { s.contact_dive = true; }},
-    {"s0 = 0.025, dives, order = deviation", [](Settings& s) {
+    {"s0 = 0.025, dives, order = force", [](Settings& s) {
        s.contact_dive = true;
-       s.order = Order::deviation;
+       s.order = Order::force;
      }}};
 
 void by_budget(const Place& at, const Body& a, const Body& b, const std::vector<Pose>& poses) {
