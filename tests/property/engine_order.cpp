@@ -27,8 +27,8 @@ const Bodies& bodies() {
   return both;
 }
 
-// Surfaces that do not cross: where they do, a whole area is as deep as its deepest point, and which
-// point stands for it depends on what was measured before.
+// Surfaces that do not cross: where they do, a whole area is as deep as its deepest point, and
+// which point stands for it depends on what was measured before.
 Pose slide(int i) {
   return {{1.79 + 0.02 * std::sin(0.2 * i), 0.3 * std::sin(0.03 * i), 0.004 * i},
           turn({0.01 * i, 0.004 * i, 0})};
