@@ -69,9 +69,8 @@ struct QueryResult {
 /// loses detail only. An exact query that no budget can end is worked off in the cheapest order
 /// (Discipline::whole); where its nodes or contacts turn out not to fit, it begins again from the
 /// roots, by worth, so that what is nearest gets the memory, and later ticks go on from there until
-/// one fits. Departure: nearest first within what has to
-/// be measured anyway, so that forces are renewed before detail is added. Cost: the budget, plus
-/// one leaf contact, plus O(front).
+/// one fits. Departure: nearest first within what has to be measured anyway, so that forces are
+/// renewed before detail is added. Cost: the budget, plus one leaf contact, plus O(front).
 QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally) noexcept;
 
 }  // namespace palpate::levels

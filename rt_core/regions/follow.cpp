@@ -16,10 +16,6 @@ constexpr std::uint32_t kSeedEvery = 2;
 constexpr std::uint32_t kMostDives = 8;  ///< of a region in a tick
 /// Regions that begin are as far apart from tick to tick as this; prime.
 constexpr std::uint32_t kStride = 61;
-/// Below this an interval is closed.
-constexpr float kClosed = 2 * kRounding;
-/// More than any distance.
-constexpr float kFarthest = 1e18f;
 
 class Follower {
  public:

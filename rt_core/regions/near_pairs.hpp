@@ -8,6 +8,9 @@
 
 namespace palpate::regions {
 
+/// More than any distance, in units, with a square that is still a float.
+inline constexpr float kFarthest = 1e18f;
+
 /// A pair of triangles and its distance.
 struct Witness {
   std::uint32_t a = image::kNone;  ///< into a's region_triangles

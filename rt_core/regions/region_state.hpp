@@ -26,7 +26,7 @@ struct RegionState {
   double turn_at = 0;    ///< PairState::turn
   Witness witness;       ///< its distance is of the last tick it was measured in
   NearPairs near;
-  Seeds seeds;
+  Seeds seeds;  ///< other places of it that are followed (follow.hpp)
 };
 
 /// How far any point of a region has moved against b since the proof, at most: the displacement of

@@ -45,10 +45,6 @@ constexpr double kFollowWorth = 2;
 constexpr double kLeastGain = 0.006;
 /// Neighbours of a witness farther than this many delta are not looked at.
 constexpr float kClimbReach = 2;
-/// Below this an interval is closed: rounding leaves as much.
-constexpr float kClosed = 2 * kRounding;
-/// More than any distance.
-constexpr float kFarthest = 1e18f;
 
 /// Rounded towards minus infinity far enough for float.
 float float_below(double v) noexcept { return static_cast<float>(v - 1e-7 * (v < 0 ? -v : v)); }

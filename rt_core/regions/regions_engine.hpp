@@ -23,6 +23,9 @@
 
 namespace palpate::regions {
 
+/// An interval that is no wider, in units, is closed: rounding leaves as much.
+inline constexpr float kClosed = 2 * kRounding;
+
 /// A region that may be nearer than delta in this tick.
 struct Active {
   float rest = 0;   ///< at the present poses

@@ -13,8 +13,6 @@ using image::RegionNode;
 using image::RegionTriangle;
 
 constexpr float kFar = std::numeric_limits<float>::max();
-/// More than any distance, with a square that is still a float.
-constexpr float kFarthest = 1e18f;
 
 /// Distances of sixteen pairs at once, in units.
 std::uint32_t evaluate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,

@@ -68,11 +68,9 @@ TEST(EngineBudget, few_nodes_are_a_reported_graceful_stop) {
 }
 
 TEST(EngineBudget, few_nodes_without_a_budget_go_to_what_is_nearest) {
-  Settings settings = kSettings;
-  settings.order = Order::nearest;
   for (const std::uint32_t nodes : {2u, 10u, 100u}) {
-    BakedScene one({bodies().a.view, bodies().b.view}, {{0, 1}}, settings, {.nodes = nodes});
-    BakedScene other({bodies().a.view, bodies().b.view}, {{0, 1}}, settings, {.nodes = nodes});
+    BakedScene one({bodies().a.view, bodies().b.view}, {{0, 1}}, kSettings, {.nodes = nodes});
+    BakedScene other({bodies().a.view, bodies().b.view}, {{0, 1}}, kSettings, {.nodes = nodes});
     const Pose poses[2] = {slide(0), {}};
     const TickResult r = tick_or_fail(*one.engine, poses);
     const TickResult s = tick_or_fail(*other.engine, poses, {.units = 1000000});
