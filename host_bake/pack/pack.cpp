@@ -9,6 +9,7 @@
 
 #include "host_bake/base/error.hpp"
 #include "host_bake/pack/adjacency.hpp"
+#include "host_bake/pack/patch_normal.hpp"
 #include "rt_core/image/view.hpp"
 
 namespace palpate::bake {
@@ -116,6 +117,16 @@ class PieceWriter {
       out_.triangles.push_back(t);
     }
     for (const auto& f : from.virtual_faces) out_.virtual_faces.push_back({{f[0], f[1], f[2]}});
+    if (!from.back_open) write_patch_normal(from, to);
+  }
+
+  void write_patch_normal(const TreePiece& from, image::Piece& to) {
+    std::vector<PointF> points;
+    points.reserve(from.vertices.size());
+    for (const std::uint32_t v : from.vertices) points.push_back(tree_.points[v]);
+    const PatchNormal normal = patch_normal(points, from.triangles);
+    std::copy(normal.mean.begin(), normal.mean.end(), to.patch_normal);
+    to.patch_cosine = normal.least_cosine;
   }
 
   void write_culling(const CullingBound& from, image::Piece& to) {

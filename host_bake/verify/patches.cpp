@@ -2,6 +2,7 @@
 // Each patch against its hull: constraints 1 and 2 of Sec. 4.3, and what virtual faces have to
 // cover.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <numeric>
 #include <string>
@@ -11,12 +12,14 @@
 #include "host_bake/metrics/exact.hpp"
 #include "host_bake/metrics/vector.hpp"
 #include "host_bake/pack/adjacency.hpp"
+#include "host_bake/pack/patch_normal.hpp"
 #include "host_bake/verify/proofs.hpp"
 
 namespace palpate::bake {
 namespace {
 
 constexpr double kCoverTolerance = 1e-9;
+constexpr double kNormalTolerance = 1e-6;
 
 // A directed edge of a triangle and the triangle's third vertex, keyed by its ends without order.
 struct Side {
@@ -158,6 +161,23 @@ std::string uncovered(const Evidence& evidence, std::uint32_t index) {
   return left;
 }
 
+std::string wrong_normal(const Evidence& evidence, std::uint32_t index) {
+  const image::Piece& piece = evidence.image.pieces[index];
+  const auto& n = piece.patch_normal;
+  const bool has_side =
+      (piece.flags & static_cast<std::uint32_t>(image::PieceFlag::back_open)) == 0;
+  if (!has_side || evidence.image.header->format_minor < image::kPatchNormalsSince) return {};
+  const PatchNormal expected = patch_normal(evidence.points[index], patch(evidence, piece));
+  double off = std::abs(static_cast<double>(piece.patch_cosine) -
+                        static_cast<double>(expected.least_cosine));
+  for (std::size_t i = 0; i < 3; ++i) {
+    off =
+        std::max(off, std::abs(static_cast<double>(n[i]) - static_cast<double>(expected.mean[i])));
+  }
+  if (off <= kNormalTolerance) return {};
+  return "the normal or its cosine is off by " + std::to_string(off);
+}
+
 }  // namespace
 
 Proof prove_interior_edges_convex(const Evidence& evidence) {
@@ -170,6 +190,11 @@ Proof prove_interior_edges_convex(const Evidence& evidence) {
 Proof prove_no_vertex_visible(const Evidence& evidence) {
   return prove_each("no vertex is visible from a triangle of its patch", evidence.hulls.size(),
                     [&](std::uint32_t i) { return visible_vertex(evidence, i); });
+}
+
+Proof prove_patch_normals(const Evidence& evidence) {
+  return prove_each("patch normals are those of the triangles", evidence.hulls.size(),
+                    [&](std::uint32_t i) { return wrong_normal(evidence, i); });
 }
 
 Proof prove_hulls_covered(const Evidence& evidence) {

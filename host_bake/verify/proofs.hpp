@@ -26,6 +26,10 @@ inline constexpr double kIntrusionTolerance = 1e-7 * (1 + 1e-3);  // decompose()
 /// (decompose()). A flat hull needs no virtual faces.
 Proof prove_hulls_covered(const Evidence& evidence);
 
+/// The patch normal is the mean of the normals of the triangles, and the cosine their least (to
+/// 1e-6).
+Proof prove_patch_normals(const Evidence& evidence);
+
 /// The hull vertices are the extreme points of the piece's vertices (exact).
 Proof prove_hull_vertices_extreme(const Evidence& evidence);
 

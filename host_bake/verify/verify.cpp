@@ -13,7 +13,7 @@ std::vector<Proof> verify(const ImageView& image) {
           prove_hausdorff_bounds(evidence),       prove_deviation_bounds(evidence),
           prove_deviation_ordered(evidence),      prove_resolution_ordered(evidence),
           prove_support_areas_positive(evidence), prove_region_triangles(evidence),
-          prove_region_neighbours(evidence)};
+          prove_region_neighbours(evidence),      prove_patch_normals(evidence)};
 }
 
 }  // namespace palpate::bake

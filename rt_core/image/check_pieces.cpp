@@ -13,6 +13,9 @@ bool flag(const Piece& piece, PieceFlag f) noexcept {
   return (piece.flags & static_cast<std::uint32_t>(f)) != 0;
 }
 
+// Rounding of a mean of unit vectors.
+constexpr double kMaxSquaredMean = 1 + 1e-6;
+
 // Where the next piece's runs have to start. 64 bits, so that hostile counts cannot wrap.
 struct Cursor {
   std::uint64_t vertices = 0;
@@ -81,6 +84,18 @@ bool words_sound(const Piece& piece, bool is_newer) noexcept {
   return bits == 0;
 }
 
+// Version 1.0 did not say which side a patch faces, and that of an open surface has none.
+bool normal_sound(const Piece& piece, bool has_normals) noexcept {
+  double squared_norm = 0;
+  for (const float c : piece.patch_normal) {
+    if (!within(c, -1.0f, 1.0f)) return false;
+    squared_norm += static_cast<double>(c) * static_cast<double>(c);
+  }
+  if (squared_norm == 0) return piece.patch_cosine == 0;
+  return has_normals && piece.triangles > 0 && !flag(piece, PieceFlag::back_open) &&
+         squared_norm <= kMaxSquaredMean && within(piece.patch_cosine, -1.0f, 1.0f);
+}
+
 bool culling_sound(const Piece& piece) noexcept {
   return piece.culling_vertices == 0 ? piece.culling_residual == piece.hausdorff
                                      : within(piece.culling_residual, 0.0f, kMaxLength);
@@ -123,6 +138,7 @@ Status check_levels(const ImageView& image) noexcept {
 Status check_pieces(const ImageView& image) noexcept {
   if (image.pieces.size() > kMaxPieces) return Status::image_over_limit;
   const bool is_newer = image.header->format_minor > kFormatMinor;
+  const bool has_normals = image.header->format_minor >= kPatchNormalsSince;
   Cursor cursor;
   for (const Piece& piece : image.pieces) {
     if (piece.hull_vertices > kMaxHullVertices) return Status::image_over_limit;
@@ -132,7 +148,9 @@ Status check_pieces(const ImageView& image) noexcept {
         !take_runs(image, piece, cursor)) {
       return Status::image_bad_piece;
     }
-    if (!numbers_sound(piece, level.resolution)) return Status::image_bad_float;
+    if (!numbers_sound(piece, level.resolution) || !normal_sound(piece, has_normals)) {
+      return Status::image_bad_float;
+    }
   }
   return all_taken(image, cursor) ? Status::ok : Status::image_bad_piece;
 }

@@ -169,6 +169,8 @@ TEST(FormatPage, Piece_is_the_struct) {
                                        PALPATE_FIELD(P, first_culling_vertex),
                                        PALPATE_FIELD(P, culling_vertices),
                                        PALPATE_FIELD(P, culling_residual),
+                                       PALPATE_FIELD(P, patch_normal),
+                                       PALPATE_FIELD(P, patch_cosine),
                                        PALPATE_FIELD(P, reserved)};
   EXPECT_EQ(fields_of("## 5. Piece"), expected);
 }

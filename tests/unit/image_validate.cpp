@@ -174,9 +174,9 @@ TEST(Validate, Envelope_faults_have_their_names) {
 
 TEST(Validate, NewerMinorVersion_loads_and_its_unknown_parts_are_ignored) {
   using H = image::Header;
-  EXPECT_EQ(status_with_header([](H& h) { h.format_minor = 1; }), Status::ok);
+  EXPECT_EQ(status_with_header([](H& h) { h.format_minor = image::kFormatMinor + 1; }), Status::ok);
   EXPECT_EQ(status_with_header([](H& h) {
-              h.format_minor = 1;
+              h.format_minor = image::kFormatMinor + 1;
               h.reserved0 = h.reserved1[1] = 7;
               h.reserved2[39] = 1;
               h.flags |= 0x80000000u;
@@ -194,7 +194,7 @@ TEST(Validate, NewerMinorVersion_with_a_further_section_loads) {
   std::memcpy(bytes.data(), &header, sizeof(header));
   rehash(bytes);
   EXPECT_EQ(status_of(bytes), Status::image_bad_section);
-  header.format_minor = 1;
+  header.format_minor = image::kFormatMinor + 1;
   std::memcpy(bytes.data(), &header, sizeof(header));
   rehash(bytes);
   EXPECT_EQ(status_of(bytes), Status::ok);
@@ -357,7 +357,7 @@ TEST(Validate, PieceRecords_that_are_inconsistent_are_refused) {
   EXPECT_EQ(status(roles.triangle, [](P& p) { p.flags |= 2; }), Status::ok);
   EXPECT_EQ(status(0, [](P& p) { p.flags = 1; }), bad);
   EXPECT_EQ(status(0, [](P& p) { p.first_triangle = 0; }), bad);
-  EXPECT_EQ(status(0, [](P& p) { p.reserved[6] = 1; }), bad);
+  EXPECT_EQ(status(0, [](P& p) { p.reserved[2] = 1; }), bad);
   EXPECT_EQ(status(0, [](P& p) { p.level = 3; }), bad);
   EXPECT_EQ(status(0, [](P& p) { p.first_culling_vertex = 0; }), bad);
   EXPECT_EQ(status(0, [](P& p) { p.culling_vertices = 1; }), bad);
@@ -367,6 +367,33 @@ TEST(Validate, PieceRecords_that_are_inconsistent_are_refused) {
   EXPECT_EQ(status(0, [](P& p) { p.min_support_area = 0.125f; }), bad);
   EXPECT_EQ(status(0, [](P& p) { p.hull_vertices = image::kMaxHullVertices + 1; }),
             Status::image_over_limit);
+}
+
+TEST(Validate, PatchNormals_are_checked) {
+  const Roles roles = roles_of(rich_parts());
+  const auto status = [](std::uint32_t piece, float x, float cosine, auto also) {
+    return status_with([&](ImageParts& p) {
+      p.pieces[piece].patch_normal[0] = x;
+      p.pieces[piece].patch_cosine = cosine;
+      also(p);
+    });
+  };
+  const auto nothing = [](ImageParts&) {};
+  const Status bad = Status::image_bad_float;
+  EXPECT_EQ(status(roles.triangle, 1, -1, nothing), Status::ok);
+  EXPECT_EQ(status(roles.triangle, 1.1f, 1, nothing), bad);
+  EXPECT_EQ(status(roles.triangle, std::numeric_limits<float>::quiet_NaN(), 1, nothing), bad);
+  EXPECT_EQ(status(roles.triangle, 0.5f, 1.1f, nothing), bad);
+  EXPECT_EQ(status(roles.triangle, 0, 0.5f, nothing), bad);  // of no normal
+  EXPECT_EQ(status(0, 0.5f, 0.5f, nothing), bad);            // of no patch
+  EXPECT_EQ(status(roles.triangle, 0.5f, 0.5f,
+                   [&](ImageParts& p) { p.pieces[roles.triangle].patch_normal[1] = 0.9f; }),
+            bad);
+  EXPECT_EQ(status(roles.triangle, 0.5f, 0.5f,
+                   [&](ImageParts& p) { p.pieces[roles.triangle].flags |= 2; }),
+            bad);  // an open surface has no side
+  EXPECT_EQ(status(roles.triangle, 0.5f, 0.5f, [](ImageParts& p) { p.header.format_minor = 0; }),
+            bad);  // version 1.0 kept them zero
 }
 
 /// The root of rich_parts() with a culling hull: its own vertices.
