@@ -63,9 +63,9 @@ constexpr Key<Scene> kEngineKeys[] = {
      Choice<Scene>{kOrders,
                    [](Scene& s, std::size_t i) { s.settings.order = static_cast<Order>(i); },
                    [](const Scene& s) { return static_cast<std::size_t>(s.settings.order); }},
-     "what is refined first: the largest weighted surface `deviation`, the `nearest`, the largest "
-     "`ratio` of the two, or what can still change the `force` most (under a budget, where "
-     "contacts are those of the original surfaces; else as `deviation`)"},
+     "what is refined first under a budget: the largest weighted surface `deviation` (the paper's "
+     "order), the `nearest`, the largest `ratio` of the two, or what can still change the `force` "
+     "most"},
     {"budget_us", "µs",
      OptionalReal<Scene>{[](Scene& s) -> std::optional<double>& { return s.budget_us; }, 0, 1e9},
      "time after which one tick stops refining; absent: unlimited in replay, chosen from the rate "

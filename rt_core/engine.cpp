@@ -29,19 +29,10 @@ bool normalise(const Pose& in, Pose& out) noexcept {
   return true;
 }
 
-/// With s0 = 0 all that is near is refined to the original surface. Where that may be cut short,
-/// and the order is that of forces, it is refined as in an exact query: no simplified pieces on the
-/// way.
-bool refines_all(const Settings& settings, const Meter& meter) noexcept {
-  return settings.s0 == 0 && settings.order == Order::force && !settings.stop_on_surface &&
-         meter.limited();
-}
-
-levels::Rules rules_of(const Settings& settings, const Meter& meter) noexcept {
-  const bool exact = settings.exact || refines_all(settings, meter);
-  return {.exact = exact,
+levels::Rules rules_of(const Settings& settings) noexcept {
+  return {.exact = settings.exact,
           .interpolate = settings.interpolate,
-          .contact_dive = settings.contact_dive || exact,
+          .contact_dive = settings.contact_dive,
           .front_tracking = settings.front_tracking,
           .motion_bounds = settings.motion_bounds,
           .root_short_cut = settings.root_short_cut,
@@ -87,7 +78,7 @@ struct Found {
 
 Found find_by_levels(Engine& engine, Meter& meter) noexcept {
   const levels::QueryResult found =
-      levels::query(engine.levels, rules_of(engine.settings, meter), meter, engine.tally);
+      levels::query(engine.levels, rules_of(engine.settings), meter, engine.tally);
   if (found.queries > 0) {
     follow(engine.levels.query_ns, meter.refined_ns() / found.queries);
   }

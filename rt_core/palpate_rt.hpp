@@ -53,9 +53,8 @@ enum class Order : std::uint8_t {
   deviation,  ///< the largest weighted surface deviation s* (the paper's time-critical mode)
   nearest,    ///< the least distance
   ratio,      ///< the largest s* over distance
-  /// What can still change the force most, where contacts are those of the original surfaces:
-  /// `exact`, `contact_dive` and s0 = 0 under a budget (levels/by_force.hpp); else as `deviation`.
-  force,
+  force,      ///< what can still change the force most: the widest interval from what is proved of
+              ///< a distance up to the contact known there, or to delta
 };
 
 /// How contacts are found and turned into forces.
@@ -70,8 +69,8 @@ struct Settings {
   double kappa = std::numeric_limits<double>::infinity();
   bool exact = false;  ///< refine every pair below delta to the original surface, whatever s0 says
   Bounds bounds = Bounds::tight;
-  /// With any but `force` exact queries go nearest first. Without a budget it changes nothing.
-  Order order = Order::deviation;
+  /// Without a budget it changes nothing.
+  Order order = Order::force;
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
   /// Give contacts of simplified pieces the least distance of the original surfaces below them,
   /// instead of their own (the paper's): the force then hardly depends on the level. Costs about as
@@ -129,7 +128,7 @@ struct Budget {
 struct Contact {
   Vec3d point_a_m{};      ///< on the surface of body a
   Vec3d point_b_m{};      ///< on the surface of body b
-  Vec3d normal{};         ///< unit, from b to a
+  Vec3d normal{};         ///< unit, from b to a; of an overlap the way that parts the surfaces
   double distance_m = 0;  ///< signed: negative where the pieces overlap
   /// Its force on the tool is weight * stiffness * (delta - distance) along the normal.
   double weight = 0;

@@ -9,6 +9,11 @@
 namespace palpate::convex {
 namespace {
 
+/// Another way out counts up to so many times the depth.
+constexpr double kOtherUpTo = 1.5;
+/// Of the extent of a - b.
+constexpr double kCoplanar = 1e-13;
+
 /// The narrowest extent of a - b beyond the origin seen so far, and the face it was seen through.
 struct Best {
   double extent = std::numeric_limits<double>::infinity();
@@ -108,9 +113,10 @@ void keep(Best& best, double extent, Vec3d outward, const DifferencePoint (&corn
 }
 
 /// Grows the polytope until its nearest face is one of a - b. The proved lower bound of the depth.
-double expand(const HullPair& pair, Polytope& polytope, Best& best) noexcept {
-  constexpr double kCoplanar = 1e-13;
+/// out_settled is false where something else ended it: the polytope must then not be used any more.
+double expand(const HullPair& pair, Polytope& polytope, Best& best, bool& out_settled) noexcept {
   double lower = 0;
+  out_settled = false;
   for (std::uint32_t i = 0; i < kMaxPolytopeVertices; ++i) {  // each turn adds a vertex
     const std::uint32_t lowest = lowest_face(polytope);
     const PolytopeFace& face = polytope.faces[lowest];
@@ -124,9 +130,32 @@ double expand(const HullPair& pair, Polytope& polytope, Best& best) noexcept {
     // deepest points.
     const bool settled = e - face.offset <= kDistanceGap * extent(pair);
     if (settled || e < best.extent) keep(best, e, face.normal, corners);
+    out_settled = settled;
     if (settled || !add_vertex(polytope, lowest, w, kCoplanar * extent(pair))) break;
   }
   return lower;
+}
+
+/// The narrowest extent apart from the best one, while it is of interest.
+Best expand_apart(const HullPair& pair, Polytope& polytope, const Best& best) noexcept {
+  constexpr double kApart = 0.5;
+  const double most = kOtherUpTo * best.extent;
+  Best other;
+  for (std::uint32_t i = 0; i < kMostOther; ++i) {
+    const std::uint32_t lowest = lowest_face_apart(polytope, best.outward, kApart);
+    if (lowest == kMaxPolytopeFaces) break;
+    const PolytopeFace& face = polytope.faces[lowest];
+    if (face.offset >= most || face.offset >= other.extent) break;
+    const DifferencePoint w = support(pair, face.normal, polytope.vertices[face.vertices[0]]);
+    const double e = dot(face.normal, w.point);
+    if (e < other.extent) {
+      other.extent = e;
+      other.outward = face.normal;
+    }
+    if (e - face.offset <= kDistanceGap * extent(pair)) break;
+    if (!add_vertex(polytope, lowest, w, kCoplanar * extent(pair))) break;
+  }
+  return other;
 }
 
 /// The narrower of the two sides of what is flat, straight or a point.
@@ -154,13 +183,16 @@ Vec3d witness_a(const HullPair& pair, const Best& best) noexcept {
 }  // namespace
 
 Penetration penetration(const Hull& a, const Hull& b, const RelativePose& b_in_a,
-                        const Cache& cache, PenetrationScratch& scratch) noexcept {
+                        const Cache& cache, PenetrationScratch& scratch, Ways ways) noexcept {
   const HullPair pair{a, b, b_in_a};
   const Span s = corners_to_start(pair, cache);
   Best best;
+  Best other;
   double lower = 0;
   if (s.count == 4 && start(scratch.polytope, s.corners)) {
-    lower = expand(pair, scratch.polytope, best) - rounding(pair);
+    bool settled = false;
+    lower = expand(pair, scratch.polytope, best, settled) - rounding(pair);
+    if (settled && ways == Ways::two) other = expand_apart(pair, scratch.polytope, best);
   } else {
     measure_flat(pair, s, best);
   }
@@ -170,6 +202,11 @@ Penetration penetration(const Hull& a, const Hull& b, const RelativePose& b_in_a
   out.normal = -best.outward;
   out.point_a = witness_a(pair, best);
   out.point_b = out.point_a + out.depth * out.normal;
+  if (other.extent < kOtherUpTo * out.depth) {
+    out.other_normal = -other.outward;
+    const double longer = (other.extent - out.depth) / ((kOtherUpTo - 1) * out.depth);
+    out.other_share = 0.5 * (1 - longer);
+  }
   out.exact = out.depth - out.lower_bound <= kDistanceAccept * extent(pair);
   return out;
 }

@@ -7,6 +7,14 @@
 
 namespace palpate::convex {
 
+inline constexpr std::uint32_t kMostOther = 16;  ///< support pairs spent on the other way out
+
+/// What is asked for.
+enum class Ways : std::uint8_t {
+  shortest,
+  two,  ///< the next best way out too
+};
+
 /// In the coordinates of a.
 struct Penetration {
   double depth = 0;        ///< >= 0; moving a by depth * normal separates the hulls
@@ -15,6 +23,11 @@ struct Penetration {
   Vec3d point_a{};         ///< deepest point of a inside b
   Vec3d point_b{};         ///< point_b - point_a = depth * normal
   bool exact = true;       ///< false: a cap was met; depth and normal still separate the hulls
+  /// The next best way out, 60 degrees or more away from the normal, and how much it counts: 0.5
+  /// where it is as short, 0 where it is longer by half of the depth, there is none, the search
+  /// met a cap, or it was not asked for (Ways).
+  Vec3d other_normal{};
+  double other_share = 0;
 };
 
 /// Working memory of one query at a time, about 26 KB; needs no initialisation.
@@ -34,9 +47,12 @@ struct PenetrationScratch {
 /// finite depth and a unit normal; where the cap is met the answer is the best separating
 /// translation seen, exact = false. Where a - b is flat to kTouching (coplanar flat hulls) the
 /// depth is at most that and the normal theirs; where it is straight, the normal is one across it.
-/// Cost: at most kMaxPolytopeVertices + 12 support pairs, O(kMaxPolytopeFaces) each. Real-time
-/// safe.
+/// The depth is continuous as the hulls move. The normal leaps where another way out becomes the
+/// shortest; mixed by other_share the two directions do not.
+/// Cost: at most kMaxPolytopeVertices + 12 support pairs, O(kMaxPolytopeFaces) each, and as many as
+/// kMostOther more for the other way. Real-time safe.
 [[nodiscard]] Penetration penetration(const Hull& a, const Hull& b, const RelativePose& b_in_a,
-                                      const Cache& cache, PenetrationScratch& scratch) noexcept;
+                                      const Cache& cache, PenetrationScratch& scratch,
+                                      Ways ways = Ways::shortest) noexcept;
 
 }  // namespace palpate::convex

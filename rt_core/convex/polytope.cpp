@@ -154,12 +154,17 @@ bool start(Polytope& p, const DifferencePoint (&corners)[4]) noexcept {
 }
 
 std::uint32_t lowest_face(const Polytope& p) noexcept {
+  const std::uint32_t best = lowest_face_apart(p, {}, 0);
+  PALPATE_ASSERT(best < kMaxPolytopeFaces);
+  return best;
+}
+
+std::uint32_t lowest_face_apart(const Polytope& p, Vec3d direction, double cosine) noexcept {
   std::uint32_t best = kMaxPolytopeFaces;
   for (std::uint32_t f = 0; f < p.face_count; ++f) {
-    if (!p.faces[f].live) continue;
+    if (!p.faces[f].live || dot(p.faces[f].normal, direction) > cosine) continue;
     if (best == kMaxPolytopeFaces || p.faces[f].offset < p.faces[best].offset) best = f;
   }
-  PALPATE_ASSERT(best < kMaxPolytopeFaces);
   return best;
 }
 

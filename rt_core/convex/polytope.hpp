@@ -48,6 +48,11 @@ struct Polytope {
 /// the one it is farthest beyond. O(faces).
 [[nodiscard]] std::uint32_t lowest_face(const Polytope& polytope) noexcept;
 
+/// The same of the faces whose normals have a cosine of at most `cosine` with a unit direction;
+/// kMaxPolytopeFaces where there is none.
+[[nodiscard]] std::uint32_t lowest_face_apart(const Polytope& polytope, Vec3d direction,
+                                              double cosine) noexcept;
+
 /// Adds a vertex outside of `face` and closes the polytope around it.
 ///
 /// Faces that see the vertex, or are coplanar with it to `coplanar`, are replaced by a fan. A fan

@@ -43,6 +43,11 @@ struct PairState {
 /// Sets the poses of this tick (unit quaternions) and advances the odometers.
 void move(PairState& pair, const Pose& a, const Pose& b) noexcept;
 
+/// Approximates the surface below it.
+inline bool is_simplified(const image::Piece& piece) noexcept {
+  return piece.surface_deviation > 0 || piece.hausdorff > 0;
+}
+
 convex::Hull hull_of(const ImageView& image, const image::Piece& piece, double scale) noexcept;
 
 /// Centre of a piece's bounding sphere, in the coordinates of its body.

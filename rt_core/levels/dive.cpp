@@ -8,15 +8,6 @@ using image::Piece;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// In the order of forces one search may not take what others need: where it does not come to its
-/// end the node is split, and what has been found is built upon in the next tick.
-std::uint64_t most_queries(const Work& work) noexcept {
-  if (!work.by_force) return kMaxDiveQueries;
-  std::uint64_t share = work.meter.queries_left() / kDivesShare;
-  share = share > kLeastDiveQueries ? share : kLeastDiveQueries;
-  return share < kMaxDiveQueries ? share : kMaxDiveQueries;
-}
-
 /// One search below one node.
 class Search {
  public:
@@ -25,7 +16,7 @@ class Search {
         top_(top),
         pair_(work.pair_of(top)),
         reach_(pair_.delta),
-        end_(work.probe.queries() + most_queries(work)) {}
+        end_(work.probe.queries() + kMaxDiveQueries) {}
 
   /// Nothing from `distance` on is of interest.
   void limit(double distance) noexcept {
@@ -169,10 +160,7 @@ class Search {
 /// Keeps what a search has found and proved, and reports it.
 void conclude(Work& work, Node& node, const Search& search) noexcept {
   const PairState& pair = work.pair_of(node);
-  if (search.complete()) {
-    prove(pair, node, search.proved());
-    set(node, kSearched);
-  }
+  if (search.complete()) prove(pair, node, search.proved());
   if (search.found()) {
     search.keep_in(node);
     work.note_cap(pair, search.contact());
@@ -180,6 +168,37 @@ void conclude(Work& work, Node& node, const Search& search) noexcept {
   } else if (search.complete() && !has_dived(node)) {
     node.contact = 0;  // that of the simplified pieces is none
   }
+}
+
+/// Nothing below the node is nearer than what it keeps, or delta, by more than kDiveLoose.
+bool is_known(const PairState& pair, const Node& node) noexcept {
+  const double known = has_dived(node) ? remeasured(pair, node).distance : pair.delta;
+  return certain_now(pair, node) >= known - kDiveLoose * pair.delta;
+}
+
+/// The contact of the last tick's pieces, else of those that a search finds.
+void find(Work& work, Node& node) noexcept {
+  set(node, kDived);
+  if (!has_dived(node) && is_known(work.pair_of(node), node)) {
+    node.contact = 0;
+    return;
+  }
+  Search search(work, node);
+  if (has_dived(node)) search.measure_leaf(node.leaf_a, node.leaf_b);
+  if (!search.found()) {
+    search.run();
+    if (search.complete()) node.contact = 0;
+  }
+  conclude(work, node, search);
+}
+
+/// Searches for a nearer one, unless what is kept will do.
+void improve(Work& work, Node& node) noexcept {
+  if (is_known(work.pair_of(node), node)) return;
+  Search search(work, node);
+  if (has_dived(node)) search.limit(remeasured(work.pair_of(node), node).distance);
+  search.run();
+  conclude(work, node, search);
 }
 
 /// Calls a function with every node that may dive, while the budget lasts.
@@ -197,36 +216,8 @@ void for_each(Work& work, Visit visit) noexcept {
 
 }  // namespace
 
-bool is_known(const PairState& pair, const Node& node) noexcept {
-  const double known = has_dived(node) ? remeasured(pair, node).distance : pair.delta;
-  return certain_now(pair, node) >= known - kDiveLoose * pair.delta;
-}
-
-void find(Work& work, Node& node) noexcept {
-  set(node, kDived);
-  if (!has_dived(node) && is_known(work.pair_of(node), node)) {
-    node.contact = 0;
-    return;
-  }
-  Search search(work, node);
-  if (has_dived(node)) search.measure_leaf(node.leaf_a, node.leaf_b);
-  if (!search.found()) {
-    search.run();
-    if (search.complete()) node.contact = 0;
-  }
-  conclude(work, node, search);
-}
-
-void improve(Work& work, Node& node) noexcept {
-  if (is_known(work.pair_of(node), node)) return;
-  Search search(work, node);
-  if (has_dived(node)) search.limit(remeasured(work.pair_of(node), node).distance);
-  search.run();
-  conclude(work, node, search);
-}
-
 void dive(Work& work) noexcept {
-  if (!work.rules.contact_dive) return;
+  if (!work.rules.contact_dive || work.rules.exact) return;
   for_each(work, [&](Node& node) {
     if ((node.flags & kDived) == 0) find(work, node);
   });

@@ -17,10 +17,6 @@ inline constexpr double kDiveLoose = 0.1;
 /// Queries of one search, at most; beyond, and beyond kMaxOpenPairs, the nearest contact found
 /// stands and nothing is proved.
 inline constexpr std::uint64_t kMaxDiveQueries = 512;
-/// With Work::by_force a search gets one part in so many of the queries that are left, but at least
-/// so many.
-inline constexpr std::uint64_t kDivesShare = 4;
-inline constexpr std::uint64_t kLeastDiveQueries = 24;
 
 /// Gives stopped nodes of simplified pieces the nearest contact of the original pieces below them,
 /// and reports it.
@@ -34,20 +30,10 @@ inline constexpr std::uint64_t kLeastDiveQueries = 24;
 /// kDiveLoose: a search holds while the bodies move by less than that. What it proves is in the
 /// certificate. In images without their finest levels the finest pieces stand for the original.
 ///
-/// Where refinement was cut short nodes that still wait get their contacts so too, exact queries
-/// included. Where the budget ends the last contact stands, or that of the simplified pieces. Cost:
-/// one query a node while the motion is small, else a search; the budget.
+/// Where refinement was cut short nodes that still wait get their contacts so too. Where the budget
+/// ends the last contact stands, or that of the simplified pieces. Cost: one query a node while the
+/// motion is small, else a search; the budget.
 void dive(Work& work) noexcept;
-
-/// Nothing below the node is nearer than what it keeps, or delta, by more than kDiveLoose.
-bool is_known(const PairState& pair, const Node& node) noexcept;
-
-/// The contact of the last tick's pieces, else of those that a search finds; in a node that has
-/// stopped it is reported. One query, or those of a search.
-void find(Work& work, Node& node) noexcept;
-
-/// Searches for a nearer one, unless what is kept will do. The queries of a search, or none.
-void improve(Work& work, Node& node) noexcept;
 
 /// Stopped nodes that the budget did not do for report the contact that they keep.
 void report_undived(Work& work) noexcept;

@@ -12,6 +12,9 @@ using image::Piece;
 using image::PieceFlag;
 using image::Triangle;
 
+/// Sums of directions that are shorter point nowhere.
+constexpr double kLeastDirection = 1e-3;
+
 Vec3d position(const image::Vertex& v) noexcept {
   return {static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),
           static_cast<double>(v.position[2])};
@@ -175,17 +178,69 @@ LeafContact nearest_parts(const PairState& pair, const Piece& a, const Piece& b,
   return best;
 }
 
+Vec3d patch_normal(const Piece& piece) noexcept {
+  return {static_cast<double>(piece.patch_normal[0]), static_cast<double>(piece.patch_normal[1]),
+          static_cast<double>(piece.patch_normal[2])};
+}
+
+/// How well a patch may be met along a direction that leads out of it: 1 within its cone of
+/// normals, 0 where the cosine is less by 1. Vertices and edges have normals beyond those of the
+/// triangles. `normal` is the piece's, in the coordinates of `outward`.
+double likeness(const Piece& piece, Vec3d normal, Vec3d outward) noexcept {
+  const double length = norm(normal);
+  if (!(length > 0)) return 1;
+  const double within = 1 + dot(outward, normal) / length - static_cast<double>(piece.patch_cosine);
+  return within <= 0 ? 0 : (within >= 1 ? 1 : within * within * (3 - 2 * within));
+}
+
+/// How well two patches may meet along a direction from b to a.
+double likeness(const PairState& pair, const Piece& a, const Piece& b, Vec3d direction) noexcept {
+  const double of_a = likeness(a, patch_normal(a), -direction);
+  const double of_b = likeness(b, pair.b_in_a.rotation * patch_normal(b), direction);
+  return of_a < of_b ? of_a : of_b;
+}
+
+/// The hulls are parted soonest through the back of the thinner one where they overlap by more than
+/// half of it, and sideways where they hardly meet: no way out of the solid. The less the patches
+/// look like it, the more they are parted the way they face.
+Vec3d direction_of(const PairState& pair, const Piece& a, const Piece& b, Vec3d shortest) noexcept {
+  const double share = likeness(pair, a, b, shortest);
+  const Vec3d facing = pair.b_in_a.rotation * patch_normal(b) - patch_normal(a);
+  const Vec3d mixed = share * shortest + (1 - share) * facing;
+  const double length = norm(mixed);
+  return length > kLeastDirection ? (1 / length) * mixed : shortest;
+}
+
+/// The way out of the solid, continuous where one of the hulls' takes the place of another.
+Vec3d way_out(const PairState& pair, const Piece& a, const Piece& b,
+              const convex::Penetration& p) noexcept {
+  const Vec3d shortest = direction_of(pair, a, b, p.normal);
+  if (!(p.other_share > 0)) return shortest;
+  const Vec3d mixed =
+      (1 - p.other_share) * shortest + p.other_share * direction_of(pair, a, b, p.other_normal);
+  const double length = norm(mixed);
+  return length > kLeastDirection ? (1 / length) * mixed : shortest;
+}
+
+/// Simplified pieces may have passed through each other where the originals need not, and are then
+/// nearest at their edges, back to back: the less they face each other, the less is felt of them.
+void fade_behind(const PairState& pair, const Piece& a, const Piece& b, double reach,
+                 LeafContact& contact) noexcept {
+  if (!(contact.distance < reach) || (!is_simplified(a) && !is_simplified(b))) return;
+  contact.distance = reach - likeness(pair, a, b, contact.normal) * (reach - contact.distance);
+}
+
 LeafContact overlapping(const PairState& pair, const Piece& a, const Piece& b,
                         const convex::Cache& cache, convex::PenetrationScratch& scratch) noexcept {
-  const convex::Penetration p =
-      convex::penetration(hull_of(*pair.image_a, a, pair.scale_a),
-                          hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a, cache, scratch);
+  const convex::Penetration p = convex::penetration(hull_of(*pair.image_a, a, pair.scale_a),
+                                                    hull_of(*pair.image_b, b, pair.scale_b),
+                                                    pair.b_in_a, cache, scratch, convex::Ways::two);
   LeafContact contact;
   contact.found = true;
   contact.distance = contact.lower_bound = contact.upper_bound = -p.depth;
+  contact.normal = way_out(pair, a, b, p);
   contact.point_a = p.point_a;
-  contact.point_b = p.point_b;
-  contact.normal = p.normal;
+  contact.point_b = p.point_a + p.depth * contact.normal;
   contact.capped = !p.exact;
   return contact;
 }
@@ -211,7 +266,9 @@ LeafContact leaf_contact(const PairState& pair, const Piece& a, const Piece& b,
   }
   if (overlap) return overlapping(pair, a, b, cache, scratch);
   if (virtual_a || virtual_b) return {.hidden_a = virtual_a, .hidden_b = virtual_b};
-  return from_distance(query);
+  LeafContact contact = from_distance(query);
+  fade_behind(pair, a, b, reach, contact);
+  return contact;
 }
 
 }  // namespace palpate::levels

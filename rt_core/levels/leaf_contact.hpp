@@ -39,7 +39,10 @@ inline constexpr double kOnSurface = 1e-6;
 /// piece may be of a level at which its surface ends elsewhere, so they are not where refinement
 /// may stop (hidden_a, hidden_b). Pieces of open or self-crossing components have no inside; there
 /// the triangles of the patch are queried one by one instead of the hull. Overlapping hulls:
-/// penetration depth and direction (Appendix B, step 2b).
+/// penetration depth (Appendix B, step 2b), and its direction where the patches face that way
+/// (Piece::patch_normal); else, more and more, the way they face. Departure from the paper, whose
+/// pieces are pushed out the shortest way: of a thin piece that is often through its back. Nor is a
+/// contact of simplified pieces felt that meet back to back.
 /// @param query         the result for the hulls of a and b
 /// @param reach         only contacts nearer than this are wanted
 /// @param most_queries  to spend on triangles; beyond that the contact may not be the nearest

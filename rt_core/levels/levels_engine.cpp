@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/levels_engine.hpp"
 
-#include "rt_core/levels/by_force.hpp"
 #include "rt_core/levels/dive.hpp"
 #include "rt_core/levels/interpolate.hpp"
 #include "rt_core/levels/refine.hpp"
@@ -18,22 +17,19 @@ bool is_approximate(const Work& work, const Node& node) noexcept {
 }
 
 /// Refinement and dives share what is left of the budget, round by round; in the last round
-/// refinement may have all of it. Exact queries need dives only where they do not end in time.
+/// refinement may have all of it. Exact queries do not dive.
 constexpr std::uint32_t kRounds = 4;
 constexpr std::uint64_t kDivesPart = 2;
-constexpr std::uint64_t kDivesPartExact = 8;
+/// No share of fewer queries pays for a search: refinement gets them all.
+constexpr std::uint32_t kTooFewToShare = 8;
 
 void hold_back(Work& work) noexcept {
-  if (!work.rules.contact_dive || work.meter.queries_left() <= kTooFewToSearch) return;
-  work.meter.hold_back(work.rules.exact ? kDivesPartExact : kDivesPart);
+  if (!work.rules.contact_dive || work.rules.exact || work.meter.queries_left() <= kTooFewToShare)
+    return;
+  work.meter.hold_back(kDivesPart);
 }
 
 void refine_and_dive(Work& work) noexcept {
-  if (work.by_force) {
-    refine_by_force(work);
-    dive(work);
-    return;
-  }
   for (std::uint32_t round = 0; round < kRounds; ++round) {
     if (round + 1 < kRounds) hold_back(work);
     refine(work);
@@ -41,9 +37,6 @@ void refine_and_dive(Work& work) noexcept {
     dive(work);
     if (work.waiting.empty() || work.out_of_budget()) break;
   }
-}
-
-void note_end(Work& work) noexcept {
   report_undived(work);
   if (work.waiting.empty()) return;
   const bool by_units = work.meter.out_of_units();
@@ -55,6 +48,7 @@ void note_end(Work& work) noexcept {
 /// is somewhere within their bounds.
 void settle(Work& work) noexcept {
   for (const Waiting& item : work.waiting.items()) work.leave(item.node, item.lower_m);
+  for (const Waiting& item : work.waiting.items()) work.leave_doubtful(item.node);
   for (const std::uint32_t index : work.stopped.all()) {
     const Node& node = work.tree[index];
     if (work.tree.in_front(index) && is_approximate(work, node)) {
@@ -72,13 +66,11 @@ void finish(Work& work) noexcept {
 void run(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally, Discipline discipline,
          QueryResult& out) noexcept {
   Work work(memory, rules, meter, tally, discipline);
-  // Where a tick starts depends on what refinement may spend.
-  if (!work.by_force) hold_back(work);
+  hold_back(work);  // where a tick starts depends on what refinement may spend
   start(work);
   meter.release();
   tally.lap(Stage::start, meter);
   refine_and_dive(work);
-  note_end(work);
   tally.lap(Stage::refine, meter);
   if (!work.result.truncated_by_time && !work.result.truncated_by_units) {
     if (rules.interpolate && !rules.exact) interpolate(work);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/refine.hpp"
 
-#include "rt_core/levels/by_force.hpp"
-#include "rt_core/levels/dive.hpp"
 #include "rt_core/levels/interpolate.hpp"
 #include "rt_core/levels/leaf_contact.hpp"
 #include "rt_core/levels/start.hpp"
@@ -22,8 +20,7 @@ void wait_for_split(Work& work, std::uint32_t index) noexcept {
   const Node& node = work.tree[index];
   const PairState& pair = work.pair_of(node);
   const double certain = certain_now(pair, node);
-  const double order = work.by_force ? force_rank(work, node) : rank(work, node, certain);
-  work.wait({order, certain * pair.unit_m, index, true});
+  work.wait({rank(work, node, certain), certain * pair.unit_m, index, true});
 }
 
 bool is_below(const ImageView& image, std::uint32_t piece, std::uint32_t top) noexcept {
@@ -44,8 +41,6 @@ void inherit(const PairState& pair, const Node& parent, Node& child) noexcept {
   }
   child.s_star = parent.s_star;
 }
-
-}  // namespace
 
 void split(Work& work, std::uint32_t index) noexcept {
   Node& parent = work.tree[index];
@@ -73,8 +68,6 @@ void split(Work& work, std::uint32_t index) noexcept {
   }
 }
 
-namespace {
-
 void stop(Work& work, std::uint32_t index) noexcept { work.stopped.add(work.tree[index], index); }
 
 void stop_on_surface(Work& work, std::uint32_t index, const LeafContact& contact) noexcept {
@@ -84,11 +77,10 @@ void stop_on_surface(Work& work, std::uint32_t index, const LeafContact& contact
   stop(work, index);
 }
 
-/// A dive has shown that the original surfaces below the node are not within delta: what the
-/// simplified ones give is none.
-bool found_nothing(const PairState& pair, const Node& node) noexcept {
-  if (has_dived(node) || (node.flags & kDived) == 0) return false;
-  return (node.flags & kSearched) != 0 || is_known(pair, node);
+/// The contact kept until now is none, or in an exact query none for sure only where the pieces are
+/// the original ones.
+void doubt(const Work& work, Node& node, bool refines) noexcept {
+  node.contact = work.rules.exact && refines && node.contact != 0 ? kDoubtful : 0;
 }
 
 /// Keeps the contact of two pieces in the node, and reports it where refinement stops here and does
@@ -100,13 +92,12 @@ LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops)
       remeasured(work.pair_of(node), node).distance < work.pair_of(node).delta)
     return {};
   const PairState& pair = work.pair_of(node);
-  if (dives && found_nothing(pair, node)) return {};
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
   const LeafContact contact = leaf_contact(pair, a, b, d, node.own, pair.delta,
                                            work.meter.queries_left(), *work.memory.scratch);
   work.probe.charge_parts(contact.queries);
-  node.contact = 0;
+  doubt(work, node, !stops);
   if (contact.interrupted) {
     work.result.truncated_by_units = true;
     work.leave_unresolved(work.certain_m(node), node);
@@ -117,10 +108,6 @@ LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops)
   work.note_cap(pair, contact);
   if (contact.distance >= pair.delta) return contact;
   keep(pair, a, b, contact, node);
-  if (original && work.by_force) {  // only the child that holds it may inherit it
-    node.leaf_a = node.piece_a;
-    node.leaf_b = node.piece_b;
-  }
   if (stops && !dives) work.add_contact(node, contact);
   return contact;
 }
@@ -161,7 +148,13 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
   Node& node = work.tree[index];
   const PairState& pair = work.pair_of(node);
   const convex::Distance d = work.probe.own(pair, node);
-  Detail missing = detail(pair, piece_a(pair, node), piece_b(pair, node), d, work.rules);
+  const Piece& a = piece_a(pair, node);
+  const Piece& b = piece_b(pair, node);
+  Detail missing = detail(pair, a, b, d, work.rules);
+  if (work.rules.exact) {
+    missing.refine_a = a.children != 0;
+    missing.refine_b = b.children != 0;
+  }
   node.s_star = static_cast<float>(missing.s_star);
   node.excess = static_cast<float>(missing.excess);
   if (work.rests_apart(node, d)) {
@@ -183,7 +176,7 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
     if (!refines) refine_hidden(work, node, d, contact, missing);
     refines = missing.refine_a || missing.refine_b;
   } else if (!work.dives(node) || !has_dived(node)) {
-    node.contact = 0;
+    doubt(work, node, refines);
   }
   if (refines) {
     allow(node, missing.refine_a, missing.refine_b);
@@ -192,8 +185,6 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
     stop(work, index);
   }
 }
-
-}  // namespace
 
 void measure(Work& work, std::uint32_t index) noexcept {
   Node& node = work.tree[index];
@@ -206,6 +197,8 @@ void measure(Work& work, std::uint32_t index) noexcept {
     measure_metric(work, index);
   }
 }
+
+}  // namespace
 
 void refine(Work& work) noexcept {
   while (!work.waiting.empty() && !work.out_of_budget()) {

@@ -11,18 +11,11 @@ namespace palpate::levels {
 /// Near front nodes are measured first, nearest first: at delta or more they rest; where missing
 /// detail could be felt (rules.hpp), or what there is of it hides a contact that could be
 /// (LeafContact::hidden_a), they wait to be split, in the order of Rules::order over all pairs of
-/// bodies, free levels first; else they stop and give a contact, as they do with
-/// Rules::stop_on_surface where that is already one of the original surfaces (surface_stop.hpp). A
-/// split replaces a node by all pairs of one piece's children, which are measured before the next
-/// split. What is still on the queue afterwards is not resolved.
+/// bodies (start.hpp); else they stop and give a contact, as they do with Rules::stop_on_surface
+/// where that is already one of the original surfaces (surface_stop.hpp). In an exact query that
+/// may end (Work::may_end) all detail is missing: contacts of simplified pieces stand in until it
+/// is there. A split replaces a node by all pairs of one piece's children, which are measured
+/// before the next split. What is still on the queue afterwards is not resolved.
 void refine(Work& work) noexcept;
-
-/// Replaces a front node by the pairs of the children of the piece that its flags say, and puts the
-/// near ones on the queue. Where memory does not do for them the node is left as it is.
-void split(Work& work, std::uint32_t index) noexcept;
-
-/// Measures a near front node: it rests, waits for its split, or stops. A query or two, and those
-/// of open patches.
-void measure(Work& work, std::uint32_t index) noexcept;
 
 }  // namespace palpate::levels

@@ -23,7 +23,7 @@ Vec3d mixed(double share, Vec3d own, Vec3d other) noexcept {
 
 void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
           const LeafContact& contact, Node& node) noexcept {
-  node.contact = 1;
+  node.contact = kFound;
   node.leaf_a = node.leaf_b = kNone;
   node.witness_a = vec_cast<float>(contact.point_a);
   node.witness_b = vec_cast<float>(transpose(pair.b_in_a.rotation) *

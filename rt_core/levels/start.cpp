@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/start.hpp"
 
-#include "rt_core/levels/by_force.hpp"
-
 namespace palpate::levels {
 namespace {
 
@@ -16,9 +14,11 @@ constexpr double kSphereRounding = 1e-9;
 /// The front may be this much larger than what the budget is expected to measure: the estimate
 /// wavers, and a front that is cut back every other tick would be felt.
 constexpr double kFrontOverBudget = 1.25;
-/// With Work::by_force it may be larger by this: a contact that is kept costs no query, but time to
-/// measure it again at its points.
-constexpr double kKeptOverBudget = 8;
+/// One that is larger is cut back to this: what is left of the budget refines where it is felt.
+constexpr double kFrontCut = 0.5;
+/// It gives up what keeps no contact nearer than these shares of delta, one
+/// after the other, and then one level of all after the other.
+constexpr double kCutFrom[] = {1, 0.75, 0.5, 0.25, 0};
 /// The front's nodes lie anywhere in the pool: this many are on their way from memory.
 constexpr std::size_t kAhead = 8;
 
@@ -77,8 +77,27 @@ double count_near(const Work& work) noexcept {
   return near;
 }
 
+/// Nodes inside the tree keep the contact that they had when they were split. It has aged unseen,
+/// and may look deeper by now than anything below it.
+void forget_inside(Work& work) noexcept {
+  for (const std::uint32_t index : work.tree.front()) {
+    for (std::uint32_t p = work.tree[index].parent; p != kNone; p = work.tree[p].parent) {
+      work.tree[p].contact = 0;
+    }
+  }
+}
+
+/// Those of its children that are in the front.
+double near_children(const Work& work, const Node& parent) noexcept {
+  double near = 0;
+  for (std::uint32_t c = parent.first_child; c != kNone; c = work.tree[c].next_sibling)
+    near += work.tree.in_front(c) && work.is_near(work.tree[c]) ? 1 : 0;
+  return near;
+}
+
 /// Every ancestor gets the nearest contact below it, so that none is lost to a cut.
 void carry_contacts_up(Work& work) noexcept {
+  forget_inside(work);
   for (const std::uint32_t index : work.tree.front()) {
     const Node& node = work.tree[index];
     if (node.contact == 0) continue;
@@ -86,19 +105,31 @@ void carry_contacts_up(Work& work) noexcept {
     const double distance = remeasured(pair, node).distance;
     for (std::uint32_t p = node.parent; p != kNone; p = work.tree[p].parent) {
       Node& above = work.tree[p];
-      if (above.contact != 0 && remeasured(pair, above).distance <= distance) break;
+      const bool better = above.contact == 0 || node.contact < above.contact;
+      if (!better && (node.contact > above.contact || remeasured(pair, above).distance <= distance))
+        break;
       hand_over(node, above);
     }
   }
 }
 
-/// Every near front node gives way to its parent. False where all are roots.
-bool raise_near(Work& work) noexcept {
+/// How near the contact is that a node keeps, at its points by now; delta where it keeps none.
+double kept_distance(const PairState& pair, const Node& node) noexcept {
+  return node.contact == kFound ? remeasured(pair, node).distance : pair.delta;
+}
+
+/// Near front nodes whose parent keeps nothing nearer than `from` (share of delta) give way to it,
+/// until `most` are near. False where none did.
+bool raise_near(Work& work, double from, double most) noexcept {
   bool raised = false;
-  for (std::size_t i = 0; i < work.tree.front().size(); ++i) {
+  double near = count_near(work);
+  for (std::size_t i = 0; i < work.tree.front().size() && near > most; ++i) {
     const std::uint32_t index = work.tree.front()[i];
     const std::uint32_t parent = work.tree[index].parent;
     if (parent == kNone || !work.is_near(work.tree[index])) continue;
+    Node& above = work.tree[parent];
+    if (kept_distance(work.pair_of(above), above) < from * work.pair_of(above).delta) continue;
+    near += 1 - near_children(work, above);
     work.tree.collapse(parent);  // puts other nodes into this place
     raised = true;
   }
@@ -109,14 +140,27 @@ bool is_affordable(const Work& work, double most) noexcept {
   return static_cast<double>(work.tree.front().size()) <= most || count_near(work) <= most;
 }
 
+/// What is farthest goes first: it is felt least.
 void cut_back(Work& work) noexcept {
-  const double most = (work.by_force ? kKeptOverBudget : kFrontOverBudget) *
-                      work.meter.queries_affordable(work.memory.query_ns);
-  if (is_affordable(work, most)) return;
+  const double affordable = work.meter.queries_affordable(work.memory.query_ns);
+  if (is_affordable(work, kFrontOverBudget * affordable)) return;
+  const double most = kFrontCut * affordable;
   carry_contacts_up(work);
-  for (std::uint32_t round = 0; round < 2 * image::kMaxLevels; ++round) {
-    if (!raise_near(work) || is_affordable(work, most)) return;
+  for (const double from : kCutFrom) {
+    static_cast<void>(raise_near(work, from, most));
+    if (is_affordable(work, most)) return;
   }
+  for (std::uint32_t round = 0; round < 2 * image::kMaxLevels; ++round) {
+    if (!raise_near(work, -kInfinity, most) || is_affordable(work, most)) return;
+  }
+}
+
+/// Something below the node is at most this far: the points that it keeps, as far as they are apart
+/// by now, and what the original surfaces may be farther apart than those; at most delta.
+double known_distance(const PairState& pair, const Node& node) noexcept {
+  if (node.contact != kFound) return pair.delta;
+  const double most = remeasured(pair, node).upper_bound + static_cast<double>(node.slack);
+  return most < pair.delta ? most : pair.delta;
 }
 
 }  // namespace
@@ -134,7 +178,7 @@ void start(Work& work) noexcept {
     node.report = kNone;
     renew(work, node);
     wait_if_near(work, index);
-    if (work.is_near(node)) kept += node.contact;
+    if (work.is_near(node) && node.contact == kFound) ++kept;
   }
   work.meter.expect_contacts(kept);
 }
@@ -143,19 +187,20 @@ void wait_if_near(Work& work, std::uint32_t index) noexcept {
   const Node& node = work.tree[index];
   if (!work.is_near(node)) return;
   const PairState& pair = work.pair_of(node);
-  const double certain = certain_now(pair, node);
   const bool later = work.only_culls(node);
-  double order = certain;
-  if (later) order = work.by_force ? force_rank(work, node) : rank(work, node, certain);
-  work.wait({order, certain * pair.unit_m, index, later});
+  const double certain = certain_now(pair, node);
+  work.wait({later ? rank(work, node, certain) : certain, certain * pair.unit_m, index, later});
 }
 
 double rank(const Work& work, const Node& node, double lower) noexcept {
-  if (work.rules.exact || work.rules.order == Order::nearest) return lower;
+  const Order order = work.rules.order;
+  if ((work.rules.exact && !work.may_end) || order == Order::nearest) return lower;
+  if (order == Order::force && work.may_end)
+    return lower - known_distance(work.pair_of(node), node);
   // What is missing counts for no more than what the parent missed: refinement has an order.
   const float of_parent = node.parent == kNone ? node.s_star : work.tree[node.parent].s_star;
   const double s = static_cast<double>(node.s_star < of_parent ? node.s_star : of_parent);
-  if (work.rules.order != Order::ratio) return -s;
+  if (order != Order::ratio) return -s;
   constexpr double kLeastDistance = 1e-9;
   return -s / (lower > kLeastDistance ? lower : kLeastDistance);
 }

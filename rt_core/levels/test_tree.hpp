@@ -20,10 +20,13 @@ inline constexpr std::uint8_t kRefineA = 4;  ///< this tick: near, and a is to b
 inline constexpr std::uint8_t kRefineB = 8;
 inline constexpr std::uint8_t kDived =
     16;  ///< this tick: has looked for a contact of original pieces
-inline constexpr std::uint8_t kImproved = 32;  ///< this tick: has looked for a nearer one
-inline constexpr std::uint8_t kSearched = 64;  ///< this tick: a search below it came to its end
-inline constexpr std::uint8_t kBounded = 128;  ///< this tick: its culling hulls have been asked
-inline constexpr std::uint8_t kOfThisTick = 255;
+inline constexpr std::uint8_t kOfThisTick = kMeasured | kStopped | kRefineA | kRefineB | kDived;
+
+/// Node::contact.
+inline constexpr std::uint8_t kFound = 1;  ///< a query, perhaps of an ancestor, gave a contact
+/// As kFound, but simplified pieces that were measured since have none (exact queries that may
+/// end): it counts where a pair of bodies has no other.
+inline constexpr std::uint8_t kDoubtful = 2;
 
 /// A pair of pieces and what is known of their distance. Lengths are in the unit of the body pair.
 struct alignas(64) Node {
@@ -35,9 +38,8 @@ struct alignas(64) Node {
                       ///< pieces nor what is below them give a contact
   float certain = 0;  ///< lower bound of the distance of the two pieces' original descendants
   float reach = 0;    ///< farthest point of piece a from the centre of body a: lever arm of turning
-  std::uint16_t pair = 0;  ///< body pair
-  std::uint8_t contact =
-      0;  ///< 1: a query, perhaps of an ancestor, gave a contact at the witnesses
+  std::uint16_t pair = 0;    ///< body pair
+  std::uint8_t contact = 0;  ///< 0: none is kept at the witnesses; else kFound, kDoubtful
   std::uint8_t flags = 0;
   std::uint32_t piece_a = 0;
   std::uint32_t piece_b = 0;

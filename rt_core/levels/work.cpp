@@ -5,7 +5,7 @@ namespace palpate::levels {
 
 bool Work::only_culls(const Node& node) const noexcept {
   const PairState& pair = pair_of(node);
-  return rules.exact || is_free(piece_a(pair, node)) || is_free(piece_b(pair, node));
+  return (rules.exact && !may_end) || is_free(piece_a(pair, node)) || is_free(piece_b(pair, node));
 }
 
 bool Work::rests(Node& node) noexcept {
@@ -23,7 +23,7 @@ bool Work::rests_apart(Node& node, const convex::Distance& own) noexcept {
     static_cast<void>(probe.cull(pair, node));
   }
   const double certain = certain_now(pair, node);
-  const bool own_counts = own.lower_bound < certain && !dives(node);
+  const bool own_counts = own.lower_bound < certain && !rules.exact && !dives(node);
   set_rest(pair, node, own_counts ? own.lower_bound : certain);
   return !is_near(node);
 }
@@ -46,8 +46,14 @@ void Work::leave_unresolved(double lower_m, const Node& node) noexcept {
 void Work::leave(std::uint32_t index, double lower_m) noexcept {
   Node& node = tree[index];
   leave_unresolved(lower_m, node);
-  if (node.contact == 0) return;
-  add_contact(node, remeasured(pair_of(node), node));
+  if (node.contact == kFound) add_contact(node, remeasured(pair_of(node), node));
+}
+
+void Work::leave_doubtful(std::uint32_t index) noexcept {
+  Node& node = tree[index];
+  const PairState& pair = pair_of(node);
+  if (node.contact == kDoubtful && pair.nearest >= pair.delta)
+    add_contact(node, remeasured(pair, node));
 }
 
 bool Work::dives(const Node& node) const noexcept {

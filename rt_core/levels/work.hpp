@@ -13,14 +13,6 @@
 
 namespace palpate::levels {
 
-/// Approximates the surface below it.
-inline bool is_simplified(const image::Piece& piece) noexcept {
-  return piece.surface_deviation > 0 || piece.hausdorff > 0;
-}
-
-/// No budget of so few queries pays for a search: refinement gets them all.
-inline constexpr std::uint32_t kTooFewToSearch = 8;
-
 struct Work {
   Work(QueryMemory& query_memory, const Rules& query_rules, Meter& query_meter, Tally& query_tally,
        Discipline discipline) noexcept
@@ -29,8 +21,7 @@ struct Work {
         rules(query_rules),
         meter(query_meter),
         tally(query_tally),
-        by_force(query_rules.order == Order::force && query_meter.limited() &&
-                 query_rules.contact_dive && query_meter.queries_left() > kTooFewToSearch),
+        may_end(query_rules.exact ? discipline == Discipline::by_worth : query_meter.limited()),
         probe(query_rules, query_meter, query_tally, discipline),
         report(query_memory.contacts),
         waiting(query_memory.waiting, discipline),
@@ -50,7 +41,8 @@ struct Work {
     return meter.out_of_units() || meter.out_of_time();
   }
 
-  /// Gives no contact itself, but has to be split wherever it is near.
+  /// Gives no contact itself, but has to be split wherever it is near. In an exact query that may
+  /// end simplified pieces give one: it stands in for what is below them.
   [[nodiscard]] bool only_culls(const Node& node) const noexcept;
 
   /// Measures a node that is near: true where it and what is below it give no contact at the
@@ -70,6 +62,9 @@ struct Work {
   /// points.
   void leave(std::uint32_t index, double lower_m) noexcept;
 
+  /// What is left after all nodes: a doubtful contact where its bodies have none.
+  void leave_doubtful(std::uint32_t index) noexcept;
+
   /// A node whose contact a dive looks for where refinement stops at it (dive.hpp).
   [[nodiscard]] bool dives(const Node& node) const noexcept;
 
@@ -85,9 +80,7 @@ struct Work {
   const Rules& rules;
   Meter& meter;
   Tally& tally;
-  /// Refined in the order of forces: where the budget may end a query for contacts of the original
-  /// surfaces.
-  bool by_force;
+  bool may_end;  ///< by its budget, or an exact query by its memory
   Probe probe;
   Report report;
   WaitQueue waiting;

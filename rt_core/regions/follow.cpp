@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/follow.hpp"
 
+#include "rt_core/regions/pair_batch.hpp"
+
 namespace palpate::regions {
 namespace {
 
@@ -26,16 +28,20 @@ class Follower {
     Pursuit& pursuit = memory_.pursuit;
     ++pursuit.round;
     const auto count = static_cast<std::uint32_t>(active_.size());
-    for (std::uint32_t k = 0; k < count && within(kSeedsMeasured); ++k) measure_seeds(turn(k));
-    flush();
+    PairBatch batch(memory_, active_, pace_,
+                    [this](std::uint32_t i, const Witness& pair) { take(i, pair); });
+    for (std::uint32_t k = 0; k < count && within(kSeedsMeasured); ++k) {
+      measure_seeds(turn(k), batch);
+    }
+    batch.measure_all();
     const std::uint64_t before = pace_.used();
     for (std::uint32_t k = 0; k < count && within(kWitnessesClimbed); ++k) climb_witness(turn(k));
     const std::uint64_t climbed = pace_.used() - before;
     for (std::uint32_t k = 0; k < count && within(kSeedsClimbed); ++k) climb_seed(turn(k));
     for (std::uint32_t k = 0; k < kMostDives * count && within(1); ++k) {
-      dive_into(pursuit.next_dive++ % count);
+      dive_into(pursuit.next_dive++ % count, batch);
     }
-    flush();
+    batch.measure_all();
     // Witnesses climb where regions are searched, too.
     pursuit.follow.add(gain_, static_cast<double>(pace_.used() - start_ - climbed));
   }
@@ -60,7 +66,7 @@ class Follower {
     return distance < delta ? distance : delta;
   }
 
-  void measure_seeds(std::uint32_t index) noexcept {
+  void measure_seeds(std::uint32_t index, auto& batch) noexcept {
     const Active& item = active_[index];
     if (!is_open(item)) return;
     RegionState& state = state_of(item);
@@ -74,38 +80,18 @@ class Follower {
     for (std::uint32_t k = 0; k < seeds.count; ++k) {
       Witness& seed = seeds.at[k];
       seed.distance -= moved;
-      if (seed.distance < upper && !seed.same_pair(state.witness)) measure_soon(index, seed);
+      if (seed.distance < upper && !seed.same_pair(state.witness)) batch.add(index, seed);
     }
   }
 
-  /// A batch is of one pair of bodies. Seeds change places when it is measured, so that it holds
-  /// pairs and not places of seeds.
-  void measure_soon(std::uint32_t index, const Witness& pair) noexcept {
-    SearchScratch& scratch = *memory_.search;
-    if (pending_ == kBatch ||
-        (pending_ > 0 && active_[scratch.batch_of[0]].pair != active_[index].pair)) {
-      flush();
-    }
-    scratch.batch_of[pending_] = index;
-    scratch.batch_a[pending_] = pair.a;
-    scratch.batch_b[pending_] = pair.b;
-    ++pending_;
-  }
-
-  void flush() noexcept {
-    if (pending_ == 0) return;
-    float distances[kBatch];
-    SearchScratch& scratch = *memory_.search;
-    const PairFrame& frame = frame_of_item(active_[scratch.batch_of[0]]);
-    measure(*memory_.kernels, frame, scratch, pace_, pending_, distances);
-    for (std::uint32_t i = 0; i < pending_; ++i) {
-      const Witness pair{scratch.batch_a[i], scratch.batch_b[i], distances[i]};
-      const Active& item = active_[scratch.batch_of[i]];
-      note_seed(*frame.a, state_of(item).witness, state_of(item).seeds);
-      note_seed(*frame.a, pair, state_of(item).seeds);
-      take_if_nearer(item, pair);
-    }
-    pending_ = 0;
+  /// A measured pair becomes a seed, and the witness where it is nearer.
+  void take(std::uint32_t index, const Witness& pair) noexcept {
+    const Active& item = active_[index];
+    const ImageView& a = *frame_of_item(item).a;
+    RegionState& state = state_of(item);
+    note_seed(a, state.witness, state.seeds);
+    note_seed(a, pair, state.seeds);
+    take_if_nearer(item, pair);
   }
 
   void take_if_nearer(const Active& item, const Witness& pair) noexcept {
@@ -143,12 +129,12 @@ class Follower {
     return (item.region + memory_.pursuit.round) % every == 0;
   }
 
-  void dive_into(std::uint32_t index) noexcept {
+  void dive_into(std::uint32_t index, auto& batch) noexcept {
     const Active& item = active_[index];
     if (!is_open(item)) return;
     const Witness found = dive(*memory_.kernels, frame_of_item(item), pace_, item.region,
                                state_of(item).seeds.dives++);
-    measure_soon(index, found);
+    batch.add(index, found);
   }
 
   QueryMemory& memory_;
@@ -157,7 +143,6 @@ class Follower {
   double units_;
   std::uint64_t start_;
   double gain_ = 0;
-  std::uint32_t pending_ = 0;
 };
 
 }  // namespace

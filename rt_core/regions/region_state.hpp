@@ -25,6 +25,7 @@ struct RegionState {
   double travel_at = 0;  ///< PairState::travel
   double turn_at = 0;    ///< PairState::turn
   Witness witness;       ///< its distance is of the last tick it was measured in
+  float cost = 0;        ///< work units of the last search of all of it; 0: not known
   NearPairs near;
   Seeds seeds;  ///< other places of it that are followed (follow.hpp)
 };

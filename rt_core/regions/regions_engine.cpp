@@ -5,6 +5,7 @@
 
 #include "rt_core/base/queue.hpp"
 #include "rt_core/regions/follow.hpp"
+#include "rt_core/regions/pair_batch.hpp"
 #include "rt_core/regions/report.hpp"
 
 namespace palpate::regions {
@@ -36,6 +37,11 @@ constexpr float kWide = 0.1f;
 constexpr double kManyTicks = 10;
 constexpr std::uint32_t kFewSearches = 4;
 constexpr std::uint32_t kStepsPerLook = 4;
+/// After a jump it is asked once, of the whole tick, as soon as so many regions have been searched;
+/// and not where so few units are left for each that a dive and a climb are not to be had.
+constexpr double kManyTicksAfterJump = 5;
+constexpr std::uint32_t kFewAfterJump = 2;
+constexpr double kUnitsToFollow = 16;
 /// Then following takes this share of what is left, the larger where it brings witnesses nearer
 /// for the same work than searches do: by half as much, for it also keeps them there.
 constexpr double kMostFollow = 0.85;
@@ -76,14 +82,18 @@ class Query {
   }
 
  private:
-  /// Of equal widths, as after a jump, neighbours are far apart in the order, so that a budget
-  /// which ends early has seen something of everywhere.
+  /// By width, for what it may stay open by. Of equal ones, as after a jump, neighbours are far
+  /// apart in the order, so that a budget which ends early has seen something of everywhere.
   struct Wider {
     std::span<const Active> active;
+    float key(std::uint32_t i) const noexcept {
+      return active[i].width > kClosed ? active[i].width / active[i].weight : 0;
+    }
     static std::uint32_t scattered(std::uint32_t i) noexcept { return i * 0x9e3779b1u; }
     bool operator()(std::uint32_t a, std::uint32_t b) const noexcept {
-      return active[a].width > active[b].width ||
-             (active[a].width == active[b].width && scattered(a) < scattered(b));
+      const float of_a = key(a);
+      const float of_b = key(b);
+      return of_a > of_b || (of_a == of_b && scattered(a) < scattered(b));
     }
   };
 
@@ -144,11 +154,14 @@ class Query {
       item.state = first + i;
       item.region = i;
       item.pair = index;
+      item.weight = 1;
       item.climbed = false;
     }
   }
 
   void measure_witnesses() noexcept {
+    PairBatch batch(memory_, active(), pace_,
+                    [this](std::uint32_t i, const Witness& pair) { take_if_nearer(i, pair); });
     for (std::uint32_t i = 0; i < count_; ++i) {
       Witness& witness = state_of(active()[i]).witness;
       if (!witness.known()) continue;
@@ -158,15 +171,17 @@ class Query {
         memory_.containment[active()[i].pair].doubtful = true;
       }
       witness.distance = kFarthest;
-      measure_soon(i, at_last);
+      batch.add(i, at_last);
     }
-    flush();
+    batch.measure_all();
     for (Active& item : active()) widen(item);
   }
 
   /// Those of the near pairs that may be nearer than the witness now. Where the budget ends this,
   /// they count as not kept.
   void measure_near_pairs() noexcept {
+    PairBatch batch(memory_, active(), pace_,
+                    [this](std::uint32_t i, const Witness& pair) { take_if_nearer(i, pair); });
     for (std::uint32_t i = 0; i < count_; ++i) {
       Active& item = active()[i];
       const RegionState& state = state_of(item);
@@ -179,37 +194,16 @@ class Query {
           item.rest = lower - kRounding < item.rest ? lower - kRounding : item.rest;
           break;
         }
-        if (!pair.same_pair(state.witness)) measure_soon(i, pair);
+        if (!pair.same_pair(state.witness)) batch.add(i, pair);
       }
     }
-    flush();
+    batch.measure_all();
     for (Active& item : active()) widen(item);
   }
 
-  void measure_soon(std::uint32_t index, const Witness& pair) noexcept {
-    if (pending_ == kBatch ||
-        (pending_ > 0 && active()[memory_.search->batch_of[0]].pair != active()[index].pair)) {
-      flush();
-    }
-    memory_.search->batch_of[pending_] = index;
-    memory_.search->batch_a[pending_] = pair.a;
-    memory_.search->batch_b[pending_] = pair.b;
-    ++pending_;
-  }
-
-  void flush() noexcept {
-    if (pending_ == 0) return;
-    float distances[kBatch];
-    SearchScratch& scratch = *memory_.search;
-    const PairFrame& frame = frame_of_item(active()[scratch.batch_of[0]]);
-    measure(*memory_.kernels, frame, scratch, pace_, pending_, distances);
-    for (std::uint32_t i = 0; i < pending_; ++i) {
-      Witness& witness = state_of(active()[scratch.batch_of[i]]).witness;
-      if (distances[i] < witness.distance) {
-        witness = {scratch.batch_a[i], scratch.batch_b[i], distances[i]};
-      }
-    }
-    pending_ = 0;
+  void take_if_nearer(std::uint32_t index, const Witness& pair) noexcept {
+    Witness& witness = state_of(active()[index]).witness;
+    if (pair.distance < witness.distance) witness = pair;
   }
 
   /// min(witness, delta)
@@ -305,9 +299,27 @@ class Query {
     for (Active& item : active()) close(item, 0);
   }
 
+  /// A region whose share of a tolerance is larger is searched less often. While intervals grow
+  /// alike, all searches together are cheapest with shares in proportion to the root of what a
+  /// search costs: least sum of cost / share for a given sum of shares.
+  void share_tolerance() noexcept {
+    if (demand_.tolerance_m <= 0) return;
+    float sum = 0;
+    float known = 0;
+    for (const Active& item : active()) {
+      sum += sqrt_of(state_of(item).cost);
+      known += state_of(item).cost > 0 ? 1.0f : 0.0f;
+    }
+    for (Active& item : active()) {
+      const float cost = state_of(item).cost;
+      if (cost > 0) item.weight = sqrt_of(cost) * known / sum;
+    }
+  }
+
   void refine_widest_first() noexcept {
+    share_tolerance();
     const double share_m = count_ > 0 ? demand_.tolerance_m / count_ : 0;
-    narrow_widest(share_m, demand_.limited && !swept_);
+    narrow_widest(share_m, demand_.limited);
     if (lags_) {
       follow_witnesses();
       narrow_widest(share_m, false);
@@ -318,14 +330,14 @@ class Query {
   }
 
   /// For most of the budget where that brings witnesses nearer, else for as much as it takes to
-  /// see when it does.
+  /// see when it does. After a jump there is nothing to see yet.
   void follow_witnesses() noexcept {
     const Yield& by_search = memory_.pursuit.search;
     const Yield& by_follow = memory_.pursuit.follow;
     const double units = affordable();
     const bool worthwhile = by_follow.gain * units > kLeastGain * by_follow.units;
-    const bool better = worthwhile && kFollowWorth * by_follow.gain * by_search.units >
-                                          by_search.gain * by_follow.units;
+    const bool better = swept_ || (worthwhile && kFollowWorth * by_follow.gain * by_search.units >
+                                                     by_search.gain * by_follow.units);
     follow(memory_, active(), (better ? kMostFollow : kLeastFollow) * units, pace_);
     for (Active& item : active()) widen(item);
   }
@@ -358,15 +370,29 @@ class Query {
     }
   }
 
-  /// Searches of all wide intervals take many times what the tick has left.
+  /// Searches of all wide intervals that are felt take many times what the tick has left.
   bool lags() noexcept {
-    if (memory_.pursuit.searches < kFewSearches) return false;
+    if (swept_) return lags_after_jump();
+    lags_ =
+        memory_.pursuit.searches >= kFewSearches && units_to_search() > kManyTicks * affordable();
+    return lags_;
+  }
+
+  bool lags_after_jump() noexcept {
+    if (asked_ || searches_ < kFewAfterJump) return false;
+    asked_ = true;
+    lags_ = affordable() > kUnitsToFollow * count_ &&
+            units_to_search() > kManyTicksAfterJump * affordable();
+    return lags_;
+  }
+
+  double units_to_search() noexcept {
     std::uint32_t wide = 0;
     for (const Active& item : active()) {
-      wide += item.width > kWide * static_cast<float>(pair_of(item).delta) ? 1u : 0u;
+      const float most = kWide * static_cast<float>(pair_of(item).delta);
+      wide += is_felt(item) && item.width > most ? 1u : 0u;
     }
-    lags_ = wide * memory_.pursuit.search_units > kManyTicks * affordable();
-    return lags_;
+    return wide * memory_.pursuit.search_units;
   }
 
   /// Work units that the tick has left, about.
@@ -375,7 +401,7 @@ class Query {
   /// An interval may stay open by this much, but not down to zero: what crosses has a depth, of
   /// which the interval says nothing.
   float share_of(const Active& item, double share_m) noexcept {
-    const auto share = static_cast<float>(share_m / pair_of(item).unit_m);
+    const float share = item.weight * static_cast<float>(share_m / pair_of(item).unit_m);
     const float half = 0.5f * upper_of(item);
     return share < half ? share : half;
   }
@@ -435,7 +461,11 @@ class Query {
     const Bounds found = search(*memory_.kernels, frame_of_item(item), *memory_.search, pace_,
                                 item.region, state.witness, reach);
     const auto spent = static_cast<double>(pace_.used() - before);
-    if (!first && found.complete) memory_.pursuit.learn_search(spent);
+    if (!first && found.complete) {
+      memory_.pursuit.learn_search(spent);
+      state.cost = static_cast<float>(spent);
+      ++searches_;
+    }
     state.witness = found.best;
     if (known) {
       const auto nearer = static_cast<double>(upper - upper_of(item));
@@ -484,10 +514,11 @@ class Query {
   Meter& meter_;
   Pace pace_;
   std::uint32_t count_ = 0;  // of active regions
-  std::uint32_t pending_ = 0;
   bool truncated_ = false;
   bool lags_ = false;   // searches do not keep up
   bool swept_ = false;  // in this tick
+  bool asked_ = false;  // after a jump: whether searches will keep up
+  std::uint32_t searches_ = 0;
   QueryResult result_;
 };
 

@@ -28,9 +28,10 @@ inline constexpr float kClosed = 2 * kRounding;
 
 /// A region that may be nearer than delta in this tick.
 struct Active {
-  float rest = 0;   ///< at the present poses
-  float moved = 0;  ///< since the proof, at most
-  float width = 0;  ///< min(witness, delta) - rest: what its force may still change by
+  float rest = 0;    ///< at the present poses
+  float moved = 0;   ///< since the proof, at most
+  float width = 0;   ///< min(witness, delta) - rest: what its force may still change by
+  float weight = 1;  ///< its part of a tolerance, of which the mean is 1
   std::uint32_t state = 0;
   std::uint32_t region = 0;
   std::uint32_t pair = 0;
@@ -85,8 +86,9 @@ struct Demand {
 /// measured at the present poses and bound the distances from above. That is exact for as long as
 /// no other pair can have come as near; then the region is searched again (search.hpp), under a
 /// budget the widest interval first and closed in steps, after a cheap look at the witness's
-/// neighbours. A budget that is far too small for the searches goes to following the witnesses
-/// instead where that brings them nearer (follow.hpp). Whatever ends it, every interval holds its
+/// neighbours. A tolerance is shared so that what costs more to search may stay open wider. A
+/// budget that is far too small for the searches goes to following the witnesses instead where that
+/// brings them nearer (follow.hpp), and after a jump. Whatever ends it, every interval holds its
 /// distance, and every witness nearer than delta is a contact. Where triangles cross, the pieces
 /// that they belong to give the depth and the curve in which they do the direction (crossing.hpp).
 ///

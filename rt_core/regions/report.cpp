@@ -94,10 +94,9 @@ class Report {
     const double distance = norm(apart);
     constexpr double kTouching = 1e-9;  // a direction of so short a vector is rounding
     // Touching, the outward normal of b's is right whichever side a comes from.
-    const Vec3d outward = facing(pair, witness);
-    const Vec3d normal = distance > kTouching ? (1 / distance) * apart : outward;
-    const bool flip = distance > kTouching && (memory_.containment[item.pair].inside ||
-                                               is_behind(item, dot(normal, outward)));
+    const Vec3d normal = distance > kTouching ? (1 / distance) * apart : facing(pair, witness.b);
+    const bool flip =
+        distance > kTouching && (memory_.containment[item.pair].inside || is_behind(item, normal));
     const double side = flip ? -1 : 1;
     add(item, {on_a, on_a - apart, side * normal, side * distance,
                pair.image_a->region_triangles[witness.a].piece,
@@ -105,23 +104,27 @@ class Report {
   }
 
   /// The region is nearest to the inner side of a face of b: it has passed through, beside others
-  /// of its body that cross the surface or not. Not told where the interval is so open that the
+  /// of its body that cross the surface or not. At an edge or a corner one face may mislead; of
+  /// those there, the one met most squarely tells. Not told where the interval is so open that the
   /// nearest may be a face before this one, on a wall thinner than the interval; nor from a surface
   /// that is open to its back.
-  bool is_behind(const Active& item, double cosine) noexcept {
-    constexpr double kStraight = -0.99;  // at an edge or a corner a normal of one face says little
-    constexpr double kMostOpen = 0.1;    // of delta
+  bool is_behind(const Active& item, Vec3d normal) noexcept {
+    constexpr double kSquare = -0.9;
+    constexpr double kMostOpen = 0.1;  // of delta
     const PairState& pair = pair_of(item);
-    if (cosine > kStraight || static_cast<double>(item.width) > kMostOpen * pair.delta) {
-      return false;
-    }
+    const std::uint32_t face = state_of(item).witness.b;
+    const double own = dot(normal, facing(pair, face));
+    if (own > kSquare || static_cast<double>(item.width) > kMostOpen * pair.delta) return false;
     const ImageView& b = *pair.image_b;
-    return is_closed(b, b.region_triangles[state_of(item).witness.b]);
+    for (const std::uint32_t beside : b.region_triangles[face].neighbours) {
+      if (beside != image::kNone && dot(normal, facing(pair, beside)) >= -own) return false;
+    }
+    return is_closed(b, b.region_triangles[face]);
   }
 
-  /// The outward normal of the triangle of b.
-  static Vec3d facing(const PairState& pair, const Witness& witness) noexcept {
-    const RegionTriangle& t = pair.image_b->region_triangles[witness.b];
+  /// The outward normal of a triangle of b.
+  static Vec3d facing(const PairState& pair, std::uint32_t triangle) noexcept {
+    const RegionTriangle& t = pair.image_b->region_triangles[triangle];
     const Vec3d p = corner(t, 0, 1);
     const Vec3d n = pair.b_in_a.rotation * cross(corner(t, 1, 1) - p, corner(t, 2, 1) - p);
     const double length = norm(n);

@@ -96,7 +96,10 @@ TEST(GroundJawsSlowly, without_interpolation_or_steadying_it_is_worse) {
   const double interpolated = largest_steps(simplified, kUnlimited, 0.1, false).force_N;
   const double plain = largest_steps(uninterpolated, kUnlimited, 0.1, false).force_N;
   EXPECT_GT(plain, 1.3 * interpolated);
-  EXPECT_GT(interpolated, 1.1 * largest_steps(simplified, kUnlimited, 0.1, true).force_N);
+  // Without a budget the interpolated force has no step that steadying would hold back.
+  constexpr std::uint64_t kFew = 60;
+  EXPECT_GT(largest_steps(simplified, kFew, 0.1, false).force_N,
+            1.1 * largest_steps(simplified, kFew, 0.1, true).force_N);
 }
 
 TEST(GroundJawsSlowly, without_interpolation_more_steps_are_large_on_the_whole_way) {

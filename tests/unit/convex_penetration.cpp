@@ -120,6 +120,33 @@ TEST(Penetration, boxes_overlapping_by_a_face_have_the_face_depth) {
   }
 }
 
+// Two unit cubes that overlap by 0.1 along x and by more along y.
+TEST(Penetration, next_best_way_counts_by_how_much_longer_it_is) {
+  const Shape a = box({0.5, 0.5, 0.5});
+  const auto scratch = std::make_unique<PenetrationScratch>();
+  const auto ask = [&](double along_y, Ways ways) {
+    RelativePose pose;
+    pose.translation = {0.9, 1 - along_y, 0.2};
+    Cache cache;
+    static_cast<void>(distance(a.hull(), a.hull(), pose, kExact, cache));
+    return penetration(a.hull(), a.hull(), pose, cache, *scratch, ways);
+  };
+  const struct {
+    double along_y, share;
+  } cases[] = {{0.1, 0.5}, {0.125, 0.25}, {0.15, 0}, {0.3, 0}};
+  for (const auto& c : cases) {
+    const Penetration p = ask(c.along_y, Ways::two);
+    EXPECT_NEAR(p.depth, 0.1, 1e-6);
+    EXPECT_NEAR(p.other_share, c.share, 1e-5);
+    if (c.share > 0) {
+      EXPECT_NEAR(dot(p.other_normal, p.normal), 0, 1e-6);
+    }
+    const Penetration one = ask(c.along_y, Ways::shortest);
+    EXPECT_EQ(one.depth, p.depth);
+    EXPECT_EQ(one.other_share, 0);
+  }
+}
+
 TEST(Penetration, concentric_boxes_leave_through_the_nearest_face) {
   const Shape a = box({0.5, 0.4, 0.3});
   const Shape b = box({0.25, 0.25, 0.25});

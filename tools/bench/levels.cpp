@@ -167,23 +167,25 @@ void by_settings(const Place& at, const Body& a, const Body& b, const std::vecto
 
 constexpr Variant kUnderBudget[] = {
     {"exact", [](Settings& s) { s.exact = true; }},
-    {"exact, order = force",
+    {"exact, order = deviation",
      [](Settings& s) {
        s.exact = true;
-       s.order = Order::force;
+       s.order = Order::deviation;
+     }},
+    {"exact, order = nearest",
+     [](Settings& s) {
+       s.exact = true;
+       s.order = Order::nearest;
+     }},
+    {"exact, order = ratio",
+     [](Settings& s) {
+       s.exact = true;
+       s.order = Order::ratio;
      }},
     {"s0 = 0", [](Settings& s) { s.s0 = 0; }},
-    {"s0 = 0, order = force",
-     [](Settings& s) {
-       s.s0 = 0;
-       s.order = Order::force;
-     }},
     {"s0 = 0.025", [](Settings&) {}},
-    {"s0 = 0.025, dives", [](Settings& s) { s.contact_dive = true; }},
-    {"s0 = 0.025, dives, order = force", [](Settings& s) {
-       s.contact_dive = true;
-       s.order = Order::force;
-     }}};
+    {"s0 = 0.025, order = deviation", [](Settings& s) { s.order = Order::deviation; }},
+    {"s0 = 0.025, dives", [](Settings& s) { s.contact_dive = true; }}};
 
 void by_budget(const Place& at, const Body& a, const Body& b, const std::vector<Pose>& poses) {
   const Run truth = run(a, b, {.delta_m = at.delta_m, .exact = true}, poses, Budget{}.units);

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs of triangles of active regions, measured sixteen at a time.
+#pragma once
+
+#include "rt_core/regions/regions_engine.hpp"
+
+namespace palpate::regions {
+
+/// Holds pairs, not places where they are kept: what is done with one that has been measured may
+/// move others. While it is not empty, nothing else may use the batch of memory.search.
+template <class Take>
+class PairBatch {
+ public:
+  /// @param take  called as take(index, pair) for each pair that is measured, in the order in which
+  /// they were added, its distance at the present poses
+  PairBatch(QueryMemory& memory, std::span<const Active> active, Pace& pace, Take take) noexcept
+      : memory_(memory), active_(active), pace_(pace), take_(take) {}
+
+  /// @param index  of the active region that the pair is of
+  void add(std::uint32_t index, const Witness& pair) noexcept {
+    SearchScratch& scratch = *memory_.search;
+    const bool of_others =
+        count_ > 0 && active_[scratch.batch_of[0]].pair != active_[index].pair;  // other bodies
+    if (count_ == kBatch || of_others) measure_all();
+    scratch.batch_of[count_] = index;
+    scratch.batch_a[count_] = pair.a;
+    scratch.batch_b[count_] = pair.b;
+    ++count_;
+  }
+
+  /// Measures what is left. kBatchUnits units, or none.
+  void measure_all() noexcept {
+    if (count_ == 0) return;
+    float distances[kBatch];
+    SearchScratch& scratch = *memory_.search;
+    const PairFrame& frame = memory_.frames[active_[scratch.batch_of[0]].pair];
+    measure(*memory_.kernels, frame, scratch, pace_, count_, distances);
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      take_(scratch.batch_of[i], Witness{scratch.batch_a[i], scratch.batch_b[i], distances[i]});
+    }
+    count_ = 0;
+  }
+
+ private:
+  QueryMemory& memory_;
+  std::span<const Active> active_;
+  Pace& pace_;
+  Take take_;
+  std::uint32_t count_ = 0;
+};
+
+}  // namespace palpate::regions
