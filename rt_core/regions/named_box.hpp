@@ -30,6 +30,11 @@ inline float size2_of(const image::RegionNode& node, std::uint32_t slot) noexcep
   return x * x + y * y + z * z;
 }
 
+/// Product of half the lengths, in the image's unit.
+inline float volume_of(const image::RegionNode& node, std::uint32_t slot) noexcept {
+  return node.half[0][slot] * node.half[1][slot] * node.half[2][slot];
+}
+
 /// Bits of the children of a node.
 inline std::uint32_t children_of(const image::RegionNode& node) noexcept {
   return (1u << node.children) - 1u;

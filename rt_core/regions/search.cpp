@@ -58,6 +58,8 @@ class Search {
   Search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
          const Witness& witness, const Reach& reach) noexcept
       : kernels_(kernels), frame_(frame), scratch_(scratch), pace_(pace), reach_(reach) {
+    const float scale = frame.a_to_b.scale;
+    volume_a_ = scale * scale * scale;
     out_.best = given_ = witness;
     best_squared_ = witness.known() ? witness.distance * witness.distance : kFar;
     scratch_.near.count = 0;
@@ -109,14 +111,16 @@ class Search {
                        expand(box, frame_.a_to_b, frame_.b->region_nodes[0], frame_.scale2_b));
   }
 
+  /// Into the box with the larger volume: of two as long, the thinner one bounds what it holds
+  /// better already, and its children bound it little better.
   void descend(const Candidate& pair) noexcept {
     const RegionNode& over_a = frame_.a->region_nodes[node_of(pair.a)];
     const RegionNode& over_b = frame_.b->region_nodes[node_of(pair.b)];
     const std::uint32_t slot_a = slot_of(pair.a);
     const std::uint32_t slot_b = slot_of(pair.b);
     const bool split_a =
-        over_a.leaf == 0 && (over_b.leaf != 0 || frame_.scale2_a * size2_of(over_a, slot_a) >
-                                                     frame_.scale2_b * size2_of(over_b, slot_b));
+        over_a.leaf == 0 &&
+        (over_b.leaf != 0 || volume_a_ * volume_of(over_a, slot_a) > volume_of(over_b, slot_b));
     if (split_a) {
       const std::uint32_t node = over_a.first + slot_a;
       const std::uint32_t near = expand(box_of(over_b, slot_b), frame_.b_to_a,
@@ -308,6 +312,7 @@ class Search {
   Pace& pace_;
   Reach reach_;
   Witness given_;
+  float volume_a_ = 1;      // a's unit of volume, in b's
   float most_ = kFarthest;  // pairs from here on have been dropped
   Bounds out_;
   float best_squared_ = kFar;
