@@ -11,6 +11,7 @@ namespace {
 constexpr double kCornerCosine = 0.57735026918962573;
 constexpr double kCornerSine = 0.81649658092772603;
 constexpr double kRoundingUp = 1 + 1e-12;
+constexpr double kSameCosine = 1 - 1e-12;  // a microradian apart
 
 struct Deeper {
   bool operator()(const Ranked& a, const Ranked& b) const noexcept {
@@ -58,7 +59,10 @@ Depths::Depths(std::span<Felt> felt, std::span<Ranked> ranking) noexcept : felt_
     if (deepest_[side] == kNone) {
       deepest_[side] = index;
     } else {
-      felt[last[side]].next = index;
+      Felt& deeper = felt[last[side]];
+      // It has nothing to say that the deeper one has not, and would use up looks.
+      if (dot(deeper.direction, felt[index].direction) >= kSameCosine) continue;
+      deeper.next = index;
     }
     last[side] = index;
   }

@@ -32,7 +32,8 @@ struct Ranked {
 class Depths {
  public:
   /// Looks at contacts of one side, at most: the deepest ones. More are needed only where very many
-  /// contacts push in directions that differ by more than 30 degrees within a side.
+  /// contacts push in directions that differ by more than 30 degrees within a side; contacts of one
+  /// direction that follow one another in depth, as those of a flat face, count as the deepest.
   static constexpr int kMostLooks = 64;
 
   /// @param felt     outlives this; `next` is set

@@ -58,7 +58,10 @@ struct Random {
   std::vector<Contact> contacts(int count, double spread_m) {
     std::vector<Contact> c;
     for (int i = 0; i < count; ++i) {
-      c.push_back(at(vector(spread_m), direction(), (*this)(-0.0005, 0.001)));
+      // In this order with every compiler.
+      const double distance_m = (*this)(-0.0005, 0.001);
+      const Vec3d normal = direction();
+      c.push_back(at(vector(spread_m), normal, distance_m));
     }
     return c;
   }
@@ -159,6 +162,20 @@ TEST(Penalty, coincident_contacts_give_the_wrench_of_one) {
   const Penalty b = feel(more);
   EXPECT_NEAR(norm(a.wrench.force_N - b.wrench.force_N), 0, 1e-12);
   EXPECT_NEAR(norm(a.wrench.torque_Nm - b.wrench.torque_Nm), 0, 1e-14);
+}
+
+TEST(Penalty, coincident_contacts_hide_none_behind_them) {
+  const auto tilted = [](double x, double distance_m) {
+    const double z = std::sqrt(1 - x * x);
+    return at({x, 0, 0}, {x, 0, z}, distance_m);
+  };
+  std::vector<Contact> some{tilted(0.64, 0), tilted(-0.64, 1e-4), tilted(-0.57, 9e-4)};
+  std::vector<Contact> more = some;
+  more.insert(more.end(), 100, some[0]);
+  const Penalty a = feel(some);
+  const Penalty b = feel(more);
+  EXPECT_NEAR(norm(a.wrench.force_N - b.wrench.force_N), 0, 1e-12);
+  EXPECT_NEAR(norm(a.wrench.torque_Nm - b.wrench.torque_Nm), 0, 1e-12);
 }
 
 TEST(Penalty, order_of_contacts_does_not_matter) {
