@@ -10,7 +10,8 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 find_program(PALPATE_CCACHE ccache)
 if(PALPATE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${PALPATE_CCACHE}")
+  # Precompiled headers are cached only by those who say that they know of them.
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${PALPATE_CCACHE}")
 endif()
 
 set(PALPATE_SANITIZE "" CACHE STRING "Sanitizers for every target, as -fsanitize takes them (address,undefined or thread)")
@@ -20,12 +21,15 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12's superword vectoriser turns the round trip double -> float -> double of two neighbours into nothing: what is
   # rounded to float would then be computed with unrounded.
   add_compile_options(-fno-tree-slp-vectorize)
+  if(PALPATE_CCACHE)
+    add_compile_options(-fpch-preprocess)
+  endif()
 endif()
 
 add_library(palpate_flags INTERFACE)
 target_compile_options(palpate_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wold-style-cast -Wcast-align
-  -Wundef -Wformat=2 -Wvla -Wmissing-declarations -Werror)
+  -Wundef -Wformat=2 -Wvla -Wmissing-declarations $<$<NOT:$<CONFIG:Release>>:-Werror>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 at -O3 and under sanitizers sees both in std::string and in CGAL's inlined code, where there is none.
   target_compile_options(palpate_flags INTERFACE -Wno-maybe-uninitialized -Wno-restrict)
@@ -33,6 +37,10 @@ endif()
 if(PALPATE_SANITIZE)
   target_compile_options(palpate_flags INTERFACE -fsanitize=${PALPATE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(palpate_flags INTERFACE -fsanitize=${PALPATE_SANITIZE})
+  if(PALPATE_SANITIZE STREQUAL "thread")
+    # GCC and Clang have no common name for it.
+    target_compile_definitions(palpate_flags INTERFACE PALPATE_THREAD_SANITIZER)
+  endif()
 endif()
 if(PALPATE_COVERAGE)
   target_compile_options(palpate_flags INTERFACE --coverage)

@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(PALPATE_THREAD_SANITIZER)
 #include <sanitizer/tsan_interface.h>
 #endif
 
@@ -19,7 +19,7 @@ namespace palpate::bake {
 /// begin after the call and end before its return; it is told so here, and finds what is left.
 template <class Work>
 void parallel_for(std::size_t count, const Work& work) {
-#if defined(__SANITIZE_THREAD__)
+#if defined(PALPATE_THREAD_SANITIZER)
   char begin = 0;
   char end = 0;
   __tsan_release(&begin);

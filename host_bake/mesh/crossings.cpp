@@ -84,7 +84,7 @@ bool collinear(const Point& a, const Point& b, const Point& c) {
   return CGAL::collinear(to_cgal(a), to_cgal(b), to_cgal(c));
 }
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(PALPATE_THREAD_SANITIZER)
 // CGAL's threads are not ours, and the sanitizer cannot see into the oneTBB that joins them.
 using Concurrency = CGAL::Sequential_tag;
 #else

@@ -8,7 +8,7 @@ namespace palpate::test {
 /// there and code of one thread has nothing for it to see in more cases.
 template <class T>
 constexpr T effort([[maybe_unused]] T all, [[maybe_unused]] T few) {
-#ifdef __SANITIZE_THREAD__
+#ifdef PALPATE_THREAD_SANITIZER
   return few;
 #else
   return all;

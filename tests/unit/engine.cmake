@@ -18,6 +18,7 @@ target_compile_definitions(c_interface PRIVATE PALPATE_DOCS="${PROJECT_SOURCE_DI
 add_executable(engine_bits golden/engine_bits.cpp)
 target_compile_options(engine_bits PRIVATE -ffp-contract=off)
 target_link_libraries(engine_bits PRIVATE palpate_flags palpate_rt)
+add_dependencies(short_tests engine_bits)
 add_test(NAME engine.bits COMMAND engine_bits
   "${PROJECT_SOURCE_DIR}/tests/data/bumpy_ball.bin" "${PROJECT_SOURCE_DIR}/tests/data/bumpy_ball_regions.bin")
 set_tests_properties(engine.bits PROPERTIES LABELS unit)

@@ -8,8 +8,4 @@ palpate_test(models_test
   SOURCES unit/models_parts.cpp unit/models_shape.cpp unit/models_pairs.cpp LIBS models_geometry)
 palpate_test(models_default_test LABEL long SOURCES unit/models_default.cpp LIBS models_geometry)
 
-set(commands "${PROJECT_SOURCE_DIR}/tools/palpate")
-palpate_test(models_command_test
-  SOURCES unit/models_command.cpp "${commands}/make_model.cpp" "${commands}/command.cpp"
-    "${commands}/output_file.cpp" "${commands}/progress.cpp"
-  LIBS palpate_tools palpate_bake CLI11::CLI11)
+palpate_test(models_command_test SOURCES unit/models_command.cpp LIBS palpate_cli)

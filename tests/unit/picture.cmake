@@ -5,10 +5,7 @@ if(PALPATE_HOST)
     SOURCES unit/picture_raster.cpp unit/picture_view.cpp unit/picture_text.cpp unit/picture_png.cpp
     LIBS palpate_picture PNG::PNG)
 
-  set(palpate_cli "${PROJECT_SOURCE_DIR}/tools/palpate")
-  palpate_test(picture_levels_test
-    SOURCES unit/picture_levels.cpp "${palpate_cli}/level_picture.cpp" "${palpate_cli}/level_mesh.cpp"
-    LIBS palpate_picture palpate_bake)
+  palpate_test(picture_levels_test SOURCES unit/picture_levels.cpp LIBS palpate_cli)
 
   palpate_test(picture_command_test SOURCES unit/picture_command.cpp LIBS palpate_rt)
   add_dependencies(picture_command_test palpate)

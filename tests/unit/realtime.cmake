@@ -18,5 +18,5 @@ add_dependencies(realtime_process_test palpate)
 target_compile_definitions(realtime_process_test PRIVATE PALPATE_EXECUTABLE="$<TARGET_FILE:palpate>")
 
 palpate_test(stability_map SOURCES unit/stability_map.cpp
-    "${PROJECT_SOURCE_DIR}/tools/bench/pressed_wall.cpp" "${PROJECT_SOURCE_DIR}/tools/palpate/stable_scene.cpp"
-  LIBS palpate_tools)
+    "${PROJECT_SOURCE_DIR}/tools/bench/pressed_wall.cpp"
+  LIBS palpate_cli)

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-set(palpate_cli "${PROJECT_SOURCE_DIR}/tools/palpate")
 palpate_test(sweep_test
   SOURCES unit/sweep_figures.cpp unit/sweep_settings.cpp unit/sweep_motions.cpp unit/sweep_plot.cpp
-    ${palpate_cli}/sweep_figures.cpp ${palpate_cli}/sweep_settings.cpp ${palpate_cli}/replay_csv.cpp
-    ${palpate_cli}/motion_paths.cpp
-  LIBS palpate_tools palpate_plot)
+  LIBS palpate_cli)
 
 # These run the executable.
 find_package(nlohmann_json REQUIRED)
