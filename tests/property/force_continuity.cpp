@@ -41,7 +41,7 @@ struct Steps {
 constexpr double kLarge_N = 0.2;  // four fifths of the largest exact one
 
 Steps largest_steps(const Settings& settings, std::uint64_t units, double speed_m_per_s,
-                    bool steady, int ticks = effort(400, 40)) {
+                    bool steady, int ticks = 400) {
   BakedScene scene({upper().view, lower().view}, {{0, 1}}, settings);
   const Pose poses[2] = {};
   realtime::EngineQuery contacts(*scene.engine, poses, 0);
