@@ -227,7 +227,8 @@ Vec3d way_out(const PairState& pair, const Piece& a, const Piece& b,
 void fade_behind(const PairState& pair, const Piece& a, const Piece& b, double reach,
                  LeafContact& contact) noexcept {
   if (!(contact.distance < reach) || (!is_simplified(a) && !is_simplified(b))) return;
-  contact.distance = reach - likeness(pair, a, b, contact.normal) * (reach - contact.distance);
+  contact.share = likeness(pair, a, b, contact.normal);
+  contact.distance = faded(contact.distance, contact.share, reach);
 }
 
 LeafContact overlapping(const PairState& pair, const Piece& a, const Piece& b,

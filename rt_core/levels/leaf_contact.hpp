@@ -16,6 +16,7 @@ struct LeafContact {
   double distance = 0;     ///< signed; the witnesses are this far apart
   double lower_bound = 0;  ///< of the true signed distance of the two patches
   double upper_bound = 0;  ///< likewise
+  double share = 1;        ///< of its depth within the reach that is felt; distance has it counted
   Vec3d point_a{};
   Vec3d point_b{};
   Vec3d normal{};             ///< unit, from b to a
@@ -51,5 +52,10 @@ inline constexpr double kOnSurface = 1e-6;
 LeafContact leaf_contact(const PairState& pair, const image::Piece& a, const image::Piece& b,
                          const convex::Distance& query, const convex::Cache& cache, double reach,
                          std::uint32_t most_queries, convex::PenetrationScratch& scratch) noexcept;
+
+/// So long is a contact of which only a share is felt: a share of 0 reaches as far as `reach`.
+constexpr double faded(double distance, double share, double reach) noexcept {
+  return distance < reach ? reach - share * (reach - distance) : distance;
+}
 
 }  // namespace palpate::levels

@@ -10,6 +10,8 @@ namespace palpate::levels {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// A normal of this length is that of a contact felt whole: it is rounded to float.
+constexpr double kWholeShare = 1 - 1e-6;
 
 Vec3d in_world(const PairState& pair, Vec3d point) noexcept {
   return pair.centre_a_m + pair.rotation_a * (pair.unit_m * point);
@@ -28,7 +30,7 @@ void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
   node.witness_a = vec_cast<float>(contact.point_a);
   node.witness_b = vec_cast<float>(transpose(pair.b_in_a.rotation) *
                                    (contact.point_b - pair.b_in_a.translation));
-  node.normal = vec_cast<float>(contact.normal);
+  node.normal = vec_cast<float>(contact.share * contact.normal);
   constexpr double kRoundingUp = 1 + 1e-6;
   node.slack =
       static_cast<float>(kRoundingUp * (pair.scale_a * static_cast<double>(a.surface_deviation) +
@@ -41,12 +43,16 @@ LeafContact remeasured(const PairState& pair, const Node& node) noexcept {
   contact.point_b =
       pair.b_in_a.rotation * vec_cast<double>(node.witness_b) + pair.b_in_a.translation;
   const Vec3d apart = contact.point_a - contact.point_b;
+  const Vec3d normal = vec_cast<double>(node.normal);
+  const double length = norm(normal);
   contact.found = true;
-  contact.normal = vec_cast<double>(node.normal);
+  contact.normal = (1 / length) * normal;
+  contact.share = length < kWholeShare ? length : 1;
   contact.upper_bound = norm(apart);
   const double along = dot(apart, contact.normal);
   const double slid = norm(apart - along * contact.normal);
-  const double guess = along >= 0 ? contact.upper_bound : along + slid;
+  const double guess =
+      faded(along >= 0 ? contact.upper_bound : along + slid, contact.share, pair.delta);
   // Points that have slid past each other may look deep where it is proved that nothing is.
   const double certain = certain_now(pair, node);
   contact.distance = guess < certain ? certain : guess;

@@ -15,8 +15,8 @@ namespace palpate::levels {
 
 struct QueryResult;
 
-/// Keeps a contact in its node: as material points, with how much farther apart the original
-/// surfaces can be (the surface deviations of both pieces).
+/// Keeps a contact in its node: as material points, with the share of it that is felt, and how much
+/// farther apart the original surfaces can be (the surface deviations of both pieces).
 void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
           const LeafContact& contact, Node& node) noexcept;
 
@@ -34,7 +34,8 @@ inline void hand_over(const Node& from, Node& to) noexcept {
 /// The contact kept in a node, measured again at its material points, with its normal as it turned
 /// with a. While these are apart along the normal it is as long as they are; overlap is what they
 /// overlap along the normal, less what they have slid: so it ends where the bodies have parted or
-/// slid on. Never less than what is proved of the node. The points themselves bound the true
+/// slid on. No more of it is felt than when it was kept, and never more than what is proved of the
+/// node allows. The points themselves bound the true
 /// distance from above.
 LeafContact remeasured(const PairState& pair, const Node& node) noexcept;
 

@@ -54,8 +54,9 @@ struct alignas(64) Node {
   // Of the last query.
   Vec3f witness_a{};  ///< of the contact, in the coordinates of a
   Vec3f witness_b{};  ///< in the coordinates of b
-  Vec3f normal{};     ///< from b to a, in the coordinates of a: of the contact; without one, of the
-                      ///< last query that parted the hulls, zero before the first
+  Vec3f normal{};     ///< from b to a, in the coordinates of a: of the contact, as long as the
+                      ///< share of it that is felt; without one, of the last query that parted the
+                      ///< hulls, zero before the first
   float slack = 0;    ///< the original surfaces are at most this farther apart than the witnesses
   float s_star = 0;   ///< eq. 7; an ancestor's until the node is measured
   float excess = 0;   ///< Detail::excess
