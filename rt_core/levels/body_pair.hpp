@@ -30,6 +30,7 @@ struct PairState {
   double delta = 0;     ///< contact tolerance
   bool placed = false;  ///< a pose has been set before
   bool fresh = true;    ///< nothing is proved yet at any pose
+  double apart = 0;     ///< proved of the distance of the two bodies (levels engine)
   double nearest = 0;   ///< least distance of the contacts so far, or delta (levels engine)
 
   // Odometers: how far a has moved relative to b, in all ticks. A point of a at distance x from its

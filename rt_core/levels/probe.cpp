@@ -54,7 +54,8 @@ double rest_now(const PairState& pair, const Node& node) noexcept {
 }
 
 double certain_now(const PairState& pair, const Node& node) noexcept {
-  return static_cast<double>(node.certain) - motion(pair, node) - kMotionSlack;
+  const double own = static_cast<double>(node.certain) - motion(pair, node) - kMotionSlack;
+  return own > pair.apart ? own : pair.apart;
 }
 
 void prove(const PairState& pair, Node& node, double certain) noexcept {

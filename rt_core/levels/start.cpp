@@ -49,6 +49,7 @@ void rise_if_apart(Work& work, PairState& pair) noexcept {
 
 void place(Work& work, PairState& pair) noexcept {
   pair.nearest = pair.delta;
+  pair.apart = -kInfinity;
   const Node& root = work.tree[pair.root];
   const bool apart = sphere_distance(pair, piece_a(pair, root), piece_b(pair, root)) >= pair.delta;
   if (pair.fresh || apart || !work.rules.front_tracking || jumped(pair)) {
@@ -56,6 +57,7 @@ void place(Work& work, PairState& pair) noexcept {
   } else if (work.rules.root_short_cut) {
     rise_if_apart(work, pair);
   }
+  pair.apart = certain_now(pair, root);
 }
 
 /// Where the motion bound has run out the spheres may still do: they cost no query.
@@ -64,8 +66,9 @@ void renew(Work& work, Node& node) noexcept {
   if (!work.rules.motion_bounds) return begin(pair, node, -kInfinity);
   if (!work.is_near(node)) return;
   const double spheres = sphere_distance(pair, piece_a(pair, node), piece_b(pair, node));
+  if (spheres - kSphereRounding > certain_now(pair, node))
+    prove(pair, node, spheres - kSphereRounding);
   if (spheres < pair.delta + kSphereRounding) return;
-  prove(pair, node, spheres - kSphereRounding);
   set_rest(pair, node, spheres - kSphereRounding);
   node.contact = 0;
 }
