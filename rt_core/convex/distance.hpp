@@ -80,7 +80,7 @@ inline constexpr double kDistanceAccept = 1e-7;  ///< and which rounding may lea
 /// @param b_in_a  maps scaled coordinates of b to scaled coordinates of a; finite
 /// @param enough  may return State::separated early; the witnesses are then only good for a warm
 ///                start
-/// @param guess   of the direction from b to a, of about unit length, in the coordinates of a:
+/// @param guess   of the direction from b to a, 1e-9 long or more, in the coordinates of a:
 ///                where a search with a cold cache starts; zero: none
 /// Never NaN for finite input. Cost: at most 5 * kMaxDistanceIterations + 2 support pairs; one
 /// where warm. No memory. Real-time safe.

@@ -13,6 +13,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A normal of this length is that of a contact felt whole: it is rounded to float.
 constexpr double kWholeShare = 1 - 1e-6;
 
+/// Nothing less is kept: the normal has to stay a direction.
+constexpr double kLeastShare = 1e-6;
+
 Vec3d in_world(const PairState& pair, Vec3d point) noexcept {
   return pair.centre_a_m + pair.rotation_a * (pair.unit_m * point);
 }
@@ -30,7 +33,8 @@ void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
   node.witness_a = vec_cast<float>(contact.point_a);
   node.witness_b = vec_cast<float>(transpose(pair.b_in_a.rotation) *
                                    (contact.point_b - pair.b_in_a.translation));
-  node.normal = vec_cast<float>(contact.share * contact.normal);
+  const double share = contact.share > kLeastShare ? contact.share : kLeastShare;
+  node.normal = vec_cast<float>(share * contact.normal);
   constexpr double kRoundingUp = 1 + 1e-6;
   node.slack =
       static_cast<float>(kRoundingUp * (pair.scale_a * static_cast<double>(a.surface_deviation) +

@@ -11,7 +11,7 @@ namespace palpate {
 namespace {
 
 test::Outcome palpate(std::vector<std::string> arguments, const std::filesystem::path& out = {}) {
-  arguments.insert(arguments.begin(), PALPATE_EXECUTABLE);
+  arguments.emplace(arguments.begin(), PALPATE_EXECUTABLE);
   return test::run(arguments, out);
 }
 

@@ -35,7 +35,7 @@ class ImageCommands : public testing::Test {
     return (folder_.path() / name).string();
   }
   [[nodiscard]] Outcome palpate(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), PALPATE_EXECUTABLE);
+    arguments.emplace(arguments.begin(), PALPATE_EXECUTABLE);
     return run(arguments);
   }
   [[nodiscard]] Outcome inspect(std::vector<std::string> arguments) const {

@@ -17,7 +17,7 @@ class Key : public testing::Test {
  protected:
   [[nodiscard]] std::string path(const std::string& name) const { return folder_.path() / name; }
   [[nodiscard]] static test::Outcome palpate(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), PALPATE_EXECUTABLE);
+    arguments.emplace(arguments.begin(), PALPATE_EXECUTABLE);
     return test::run(std::move(arguments));
   }
   test::TemporaryFolder folder_;

@@ -30,7 +30,7 @@ class MeshCommands : public testing::Test {
   }
 
   Outcome palpate(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), PALPATE_EXECUTABLE);
+    arguments.emplace(arguments.begin(), PALPATE_EXECUTABLE);
     return run(std::move(arguments));
   }
 

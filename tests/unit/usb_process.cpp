@@ -71,11 +71,11 @@ class UsbProcess : public testing::Test {
     return test::run(std::move(command));
   }
   [[nodiscard]] test::Outcome palpate(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), PALPATE_EXECUTABLE);
+    arguments.emplace(arguments.begin(), PALPATE_EXECUTABLE);
     return with_device(std::move(arguments));
   }
   [[nodiscard]] test::Outcome dfu_util(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), DFU_UTIL);
+    arguments.emplace(arguments.begin(), DFU_UTIL);
     return with_device(std::move(arguments));
   }
   /// A DFU file of an image for a product.
