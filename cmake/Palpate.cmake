@@ -31,8 +31,8 @@ target_compile_options(palpate_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wold-style-cast -Wcast-align
   -Wundef -Wformat=2 -Wvla -Wmissing-declarations $<$<NOT:$<CONFIG:Release>>:-Werror>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # GCC 12 at -O3 and under sanitizers sees these in std::string and in CGAL's inlined code, where there is none.
-  target_compile_options(palpate_flags INTERFACE -Wno-maybe-uninitialized -Wno-restrict -Wno-stringop-overflow)
+  # GCC 12 sees these in std::string and in CGAL's inlined code, where there is none.
+  target_compile_options(palpate_flags INTERFACE -Wno-maybe-uninitialized -Wno-restrict $<$<CONFIG:Release>:-Wno-stringop-overflow;-Wno-array-bounds>)
 endif()
 if(PALPATE_SANITIZE)
   target_compile_options(palpate_flags INTERFACE -fsanitize=${PALPATE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
