@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "rt_core/convex/hull.hpp"
 #include "rt_core/geometry/pose.hpp"
@@ -30,8 +31,9 @@ struct PairState {
   double delta = 0;     ///< contact tolerance
   bool placed = false;  ///< a pose has been set before
   bool fresh = true;    ///< nothing is proved yet at any pose
-  double apart = 0;     ///< proved of the distance of the two bodies (levels engine)
-  double nearest = 0;   ///< least distance of the contacts so far, or delta (levels engine)
+  /// Lower bound of the distance of the two bodies, proved in this tick (levels engine).
+  double apart = -std::numeric_limits<double>::infinity();
+  double nearest = 0;  ///< least distance of the contacts so far, or delta (levels engine)
 
   // Odometers: how far a has moved relative to b, in all ticks. A point of a at distance x from its
   // centre has moved at most travel + turn * x since both were zero.

@@ -35,8 +35,7 @@ inline void hand_over(const Node& from, Node& to) noexcept {
 /// with a. While these are apart along the normal it is as long as they are; overlap is what they
 /// overlap along the normal, less what they have slid: so it ends where the bodies have parted or
 /// slid on. No more of it is felt than when it was kept, and never more than what is proved of the
-/// node allows. The points themselves bound the true
-/// distance from above.
+/// node allows. The points themselves bound the true distance from above. O(1).
 LeafContact remeasured(const PairState& pair, const Node& node) noexcept;
 
 class Report {
