@@ -45,7 +45,7 @@ struct Layout {
   std::span<Contact> contacts;
   std::span<force::Felt> felt;
   std::span<force::Ranked> ranking;
-  std::span<force::Place> places;
+  std::span<force::Place> copies, places;
   // Levels engine.
   std::span<levels::Node> nodes;
   std::span<std::uint32_t> front, blending, stopped;
@@ -104,6 +104,7 @@ Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKin
   out.contacts = arena.array<Contact>(limits.contacts);
   out.felt = arena.array<force::Felt>(limits.contacts);
   out.ranking = arena.array<force::Ranked>(limits.contacts);
+  out.copies = arena.array<force::Place>(limits.clusters);
   out.places = arena.array<force::Place>(limits.clusters);
   if (kind == EngineKind::levels) {
     lay_out_levels(arena, limits, out);
@@ -128,6 +129,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.contacts = layout.contacts;
   e.force.felt = layout.felt;
   e.force.ranking = layout.ranking;
+  e.force.copies.attach(layout.copies);
   e.force.places.attach(layout.places);
   e.levels.pairs = e.regions.pairs = layout.states;
   e.levels.contacts = e.regions.contacts = layout.contacts;

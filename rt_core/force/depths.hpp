@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "rt_core/force/places.hpp"
 #include "rt_core/geometry/vec3.hpp"
 
 namespace palpate::force {
@@ -17,6 +18,7 @@ struct Felt {
   Vec3d direction{};   ///< unit: where it pushes the tool
   double depth_m = 0;  ///< below delta; > 0
   double mass = 0;     ///< see penalty.hpp
+  Spot spot;           ///< where it brought that
   std::uint32_t contact = 0;
   std::uint32_t next = 0;  ///< of the same side, the next less deep one
 };

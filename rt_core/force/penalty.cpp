@@ -31,19 +31,25 @@ std::span<Felt> gather(std::span<Contact> contacts, std::span<const BodyPair> pa
   return out.first(count);
 }
 
-/// In the tool's axes the grid of places turns with the scene.
+/// In the tool's axes the grids turn with the scene.
 void weigh(std::span<Felt> felt, const Pose& tool_pose, const Settings& settings,
-           Places& places) noexcept {
+           Workspace& workspace) noexcept {
   const Mat3d to_tool = transpose(rotation(tool_pose.orientation));
   // In units of delta: squares of lengths in metres may leave the range of double.
   const double per_delta = 1 / settings.delta_m;
-  places.begin(settings.cluster_radius_m);
+  workspace.copies.begin(kCopies * settings.cluster_radius_m);
+  workspace.places.begin(settings.cluster_radius_m);
   for (Felt& f : felt) {
     const double depth = per_delta * f.depth_m;
     f.mass = depth * depth;
-    places.add(to_tool * f.point_m, f.mass);
+    f.spot = workspace.copies.add(to_tool * f.point_m, f.mass, f.mass);
   }
-  for (Felt& f : felt) f.mass = places.share(to_tool * f.point_m, f.mass);
+  for (Felt& f : felt) {
+    const double part = workspace.copies.share(f.spot, f.mass);
+    f.spot = workspace.places.add(to_tool * f.point_m, f.mass, part);
+    f.mass = part;
+  }
+  for (Felt& f : felt) f.mass = workspace.places.share(f.spot, f.mass);
 }
 
 }  // namespace
@@ -52,13 +58,13 @@ Penalty penalty(std::span<Contact> contacts, std::span<const BodyPair> pairs, st
                 const Pose& tool_pose, const Settings& settings, Workspace& workspace) noexcept {
   const std::span<Felt> felt =
       gather(contacts, pairs, tool, tool_pose.position_m, settings.delta_m, workspace.felt);
-  weigh(felt, tool_pose, settings, workspace.places);
+  weigh(felt, tool_pose, settings, workspace);
   Directions directions;
   for (const Felt& f : felt) directions.add(f.direction, f.mass);
   const Depths depths(felt, workspace.ranking);
 
   Penalty out;
-  out.places_full = workspace.places.full();
+  out.places_full = workspace.copies.full() || workspace.places.full();
   for (const Felt& f : felt) {
     if (!(f.mass > 0)) continue;
     const double around = directions.around(f.direction);

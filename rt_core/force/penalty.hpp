@@ -15,8 +15,13 @@ namespace palpate::force {
 struct Workspace {
   std::span<Felt> felt;       ///< [contacts]
   std::span<Ranked> ranking;  ///< [contacts]
-  Places places;
+  Places copies;              ///< shares a contact among its copies
+  Places places;              ///< shares what is felt among contacts within cluster_radius_m
 };
+
+/// Width of the grid of copies, as a share of cluster_radius_m: nearer contacts count as one
+/// wherever others are.
+constexpr double kCopies = 1.0 / 16;
 
 /// The wrench before limits, and what it was made of.
 struct Penalty {
@@ -36,7 +41,9 @@ struct Penalty {
 ///
 ///     force_i = k D_i m_i / sum_j (K_ij m_j),   D_i = max_j (K_ij d_j),
 ///
-/// where m_i is the contact's share of the places (places.hpp) it lies at, brought with mass d_i^2.
+/// where m_i is the contact's share of the places (places.hpp) it lies at, brought with mass d_i^2;
+/// of that, contacts that coincide have one part together, so that they do not outweigh others
+/// nearby.
 /// Hence
 /// - one contact gives k d; N coincident ones give the wrench of one;
 /// - a wide contact of one normal gives k times its largest depth whatever it is cut into: the

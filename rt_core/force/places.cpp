@@ -4,7 +4,6 @@
 namespace palpate::force {
 namespace {
 
-constexpr int kCorners = 8;
 constexpr int kMostProbes = 16;  // beyond that a corner finds no room
 
 /// Corners farther out than this have no number; the masses of contacts there are kept.
@@ -14,6 +13,11 @@ std::int32_t floor_of(double v) noexcept {
   const auto towards_zero = static_cast<std::int32_t>(v);
   return v < towards_zero ? towards_zero - 1 : towards_zero;
 }
+
+double least(double a, double b) noexcept { return a < b ? a : b; }
+double most(double a, double b) noexcept { return a > b ? a : b; }
+
+std::size_t count(bool a, bool b) noexcept { return std::size_t{a} + std::size_t{b}; }
 
 bool numbered(double v) noexcept { return v > -kFarthest && v < kFarthest; }  // false for NaN
 
@@ -26,20 +30,6 @@ std::uint32_t hash_of(std::int32_t x, std::int32_t y, std::int32_t z) noexcept {
 
 }  // namespace
 
-struct Places::Corners {
-  std::int32_t x = 0, y = 0, z = 0;  // the lowest
-  Vec3d within{};                    // of the cube, in its width
-
-  [[nodiscard]] double share(int corner) const noexcept {
-    return ((corner & 1) != 0 ? within.x : 1 - within.x) *
-           ((corner & 2) != 0 ? within.y : 1 - within.y) *
-           ((corner & 4) != 0 ? within.z : 1 - within.z);
-  }
-  [[nodiscard]] std::int32_t x_of(int corner) const noexcept { return x + (corner & 1); }
-  [[nodiscard]] std::int32_t y_of(int corner) const noexcept { return y + (corner >> 1 & 1); }
-  [[nodiscard]] std::int32_t z_of(int corner) const noexcept { return z + (corner >> 2); }
-};
-
 void Places::begin(double width_m) noexcept {
   per_m_ = width_m > 0 ? 1 / width_m : 0;
   full_ = false;
@@ -48,54 +38,59 @@ void Places::begin(double width_m) noexcept {
   tick_ = 1;
 }
 
-bool Places::corners_of(Vec3d point_m, Corners& out) const noexcept {
-  const Vec3d p = per_m_ * point_m;
-  if (per_m_ == 0 || !numbered(p.x) || !numbered(p.y) || !numbered(p.z)) return false;
-  out.x = floor_of(p.x);
-  out.y = floor_of(p.y);
-  out.z = floor_of(p.z);
-  out.within = {p.x - out.x, p.y - out.y, p.z - out.z};
-  return true;
-}
-
-Place* Places::find(std::int32_t x, std::int32_t y, std::int32_t z) noexcept {
-  auto at = static_cast<std::size_t>(
+std::uint32_t Places::find(std::int32_t x, std::int32_t y, std::int32_t z) noexcept {
+  auto at = static_cast<std::uint32_t>(
       (static_cast<std::uint64_t>(hash_of(x, y, z)) * table_.size()) >> 32);
   for (int probe = 0; probe < kMostProbes; ++probe) {
     Place& place = table_[at];
     if (place.tick != tick_) {
       place = {x, y, z, tick_, 0, 0};
-      return &place;
+      return at;
     }
-    if (place.x == x && place.y == y && place.z == z) return &place;
+    if (place.x == x && place.y == y && place.z == z) return at;
     at = at + 1 < table_.size() ? at + 1 : 0;
   }
   full_ = true;
-  return nullptr;
+  return Spot::kNone;
 }
 
-void Places::add(Vec3d point_m, double mass) noexcept {
-  Corners corners;
-  if (!corners_of(point_m, corners)) return;
-  for (int i = 0; i < kCorners; ++i) {
-    const double brought = corners.share(i) * mass;
-    if (brought == 0) continue;
-    Place* place = find(corners.x_of(i), corners.y_of(i), corners.z_of(i));
-    if (place == nullptr) continue;
-    if (brought > place->most) place->most = brought;
-    place->sum += brought;
+Spot Places::add(Vec3d point_m, double mass, double part) noexcept {
+  Spot spot;
+  const Vec3d p = per_m_ * point_m;
+  if (per_m_ == 0 || !numbered(p.x) || !numbered(p.y) || !numbered(p.z)) return spot;
+  const std::int32_t x = floor_of(p.x), y = floor_of(p.y), z = floor_of(p.z);
+  const Vec3d within{p.x - x, p.y - y, p.z - z};
+  // How many axes the point lies farther along: without branches, which would be guessed wrong.
+  const std::size_t x_after = count(within.y > within.x, within.z > within.x);
+  const std::size_t y_after = count(within.x >= within.y, within.z > within.y);
+  const std::size_t z_after = 3 - x_after - y_after;
+  const double least_xy = least(within.x, within.y), most_xy = most(within.x, within.y);
+  const double farthest = most(most_xy, within.z), nearest = least(least_xy, within.z);
+  const double between = most(least_xy, least(most_xy, within.z));
+  spot.share = {1 - farthest, farthest - between, between - nearest, nearest};
+  for (std::size_t i = 0; i < Spot::kCorners; ++i) {
+    const double share = spot.share[i];
+    if (share == 0) continue;
+    spot.place[i] =
+        find(x + static_cast<std::int32_t>(x_after < i), y + static_cast<std::int32_t>(y_after < i),
+             z + static_cast<std::int32_t>(z_after < i));
+    if (spot.place[i] == Spot::kNone) continue;
+    Place& place = table_[spot.place[i]];
+    place.most = most(place.most, share * mass);
+    place.sum += share * part;
   }
+  return spot;
 }
 
-double Places::share(Vec3d point_m, double mass) noexcept {
-  Corners corners;
-  if (!corners_of(point_m, corners)) return mass;
+double Places::share(const Spot& spot, double part) const noexcept {
   double sum = 0;
-  for (int i = 0; i < kCorners; ++i) {
-    const double brought = corners.share(i) * mass;
-    if (brought == 0) continue;
-    const Place* place = find(corners.x_of(i), corners.y_of(i), corners.z_of(i));
-    sum += place == nullptr ? brought : brought * (place->most / place->sum);
+  for (std::size_t i = 0; i < Spot::kCorners; ++i) {
+    double brought = spot.share[i] * part;
+    if (spot.place[i] != Spot::kNone) {
+      const Place& place = table_[spot.place[i]];
+      if (place.most < place.sum) brought *= place.most / place.sum;
+    }
+    sum += brought;
   }
   return sum;
 }

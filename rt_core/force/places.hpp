@@ -2,6 +2,8 @@
 // Contacts at one place count as one: masses that do not depend on how finely a surface is cut.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -14,17 +16,27 @@ struct Place {
   std::int32_t x = 0, y = 0, z = 0;
   std::uint32_t tick = 0;  ///< when it was last in use
   double most = 0;         ///< largest mass brought by one contact
-  double sum = 0;          ///< of all masses brought
+  double sum = 0;          ///< of all parts brought
+};
+
+/// Where a contact has brought its mass: the corners of its tetrahedron, a sixth of a cube.
+struct Spot {
+  static constexpr std::size_t kCorners = 4;
+  static constexpr std::uint32_t kNone =
+      UINT32_MAX;  ///< a corner that found no room, or needs none
+
+  std::array<double, kCorners> share{1, 0, 0, 0};  ///< add up to 1
+  std::array<std::uint32_t, kCorners> place{kNone, kNone, kNone, kNone};
 };
 
 /// A grid that remembers only the corners that contacts come near: a hash table over borrowed
 /// memory, emptied in O(1).
 ///
-/// A contact brings its mass to the eight corners of its cube, in trilinear shares. A corner counts
-/// as much as the largest mass brought, and hands that out in proportion. So a contact alone keeps
-/// its mass wherever it lies, coincident ones have that of one together, a wide contact gets a mass
-/// that grows with its area and not with its triangles, and everything is continuous in the points
-/// and masses and independent of their order but for rounding.
+/// A contact brings its mass to the four corners of its tetrahedron (Kuhn), in linear shares. A
+/// corner counts as much as the largest mass brought, and hands that out in proportion. So a
+/// contact alone keeps its mass wherever it lies, coincident ones have that of one together, a wide
+/// contact gets a mass that grows with its area and not with its triangles, and everything is
+/// continuous in the points and masses and independent of their order but for rounding.
 class Places {
  public:
   Places() = default;
@@ -36,20 +48,23 @@ class Places {
   /// Begins a tick with another grid. @param width_m  of a cube; 0: every contact keeps its mass
   void begin(double width_m) noexcept;
 
-  /// Brings a contact. @param point_m  in the axes of the grid, mass >= 0. O(1)
-  void add(Vec3d point_m, double mass) noexcept;
+  /// Brings a contact. O(1)
+  /// @param point_m  in the axes of the grid
+  /// @param mass     of the contact, >= 0
+  /// @param part     what the contact may have of it: all, or less where it is one of several
+  /// copies
+  Spot add(Vec3d point_m, double mass, double part) noexcept;
 
-  /// What is handed out for a contact that was brought, with the point and the mass it was brought
-  /// with: at most its mass. O(1)
-  [[nodiscard]] double share(Vec3d point_m, double mass) noexcept;
+  /// What is handed out, after all have brought theirs, for a contact that was brought with this
+  /// part: at most that. O(1)
+  [[nodiscard]] double share(const Spot& spot, double part) const noexcept;
 
   /// Whether corners found no room since begin(): contacts there keep their mass.
   [[nodiscard]] bool full() const noexcept { return full_; }
 
  private:
-  struct Corners;
-  [[nodiscard]] bool corners_of(Vec3d point_m, Corners& out) const noexcept;
-  [[nodiscard]] Place* find(std::int32_t x, std::int32_t y, std::int32_t z) noexcept;
+  /// Index of the corner in the table, Spot::kNone where that is full.
+  [[nodiscard]] std::uint32_t find(std::int32_t x, std::int32_t y, std::int32_t z) noexcept;
 
   std::span<Place> table_;
   double per_m_ = 0;

@@ -31,8 +31,8 @@ Penalty feel(std::vector<Contact>& contacts, const Settings& settings = kSetting
              const Pose& pose = {}, std::size_t places = 4096) {
   std::vector<Felt> felt(contacts.size());
   std::vector<Ranked> ranking(contacts.size());
-  std::vector<Place> table(places);
-  Workspace workspace{felt, ranking, Places(table)};
+  std::vector<Place> copies(places), table(places);
+  Workspace workspace{felt, ranking, Places(copies), Places(table)};
   return penalty(contacts, kPairs, 0, pose, settings, workspace);
 }
 
@@ -70,19 +70,25 @@ struct Random {
 /// The header's formula pair by pair, with a map in place of the hash table.
 Wrench by_definition(const std::vector<Contact>& contacts, const Settings& s) {
   const std::size_t n = contacts.size();
-  std::vector<Place> table(1u << 16);
-  Places places(table);
+  std::vector<Place> fine(1u << 16), table(1u << 16);
+  Places copies(fine), places(table);
+  copies.begin(kCopies * s.cluster_radius_m);
   places.begin(s.cluster_radius_m);
-  std::vector<double> mass(n), depth(n);
+  std::vector<double> mass(n), part(n), depth(n);
+  std::vector<Spot> spot(n);
   const auto middle = [&](std::size_t i) {
     return 0.5 * (contacts[i].point_a_m + contacts[i].point_b_m);
   };
   for (std::size_t i = 0; i < n; ++i) {
     depth[i] = std::max(0.0, s.delta_m - contacts[i].distance_m);
     mass[i] = depth[i] * depth[i] / (s.delta_m * s.delta_m);
-    places.add(middle(i), mass[i]);
+    spot[i] = copies.add(middle(i), mass[i], mass[i]);
   }
-  for (std::size_t i = 0; i < n; ++i) mass[i] = places.share(middle(i), mass[i]);
+  for (std::size_t i = 0; i < n; ++i) {
+    part[i] = copies.share(spot[i], mass[i]);
+    spot[i] = places.add(middle(i), mass[i], part[i]);
+  }
+  for (std::size_t i = 0; i < n; ++i) mass[i] = places.share(spot[i], part[i]);
   Wrench out;
   for (std::size_t i = 0; i < n; ++i) {
     double around = 0, deepest = 0;
@@ -162,6 +168,35 @@ TEST(Penalty, coincident_contacts_give_the_wrench_of_one) {
   const Penalty b = feel(more);
   EXPECT_NEAR(norm(a.wrench.force_N - b.wrench.force_N), 0, 1e-12);
   EXPECT_NEAR(norm(a.wrench.torque_Nm - b.wrench.torque_Nm), 0, 1e-14);
+}
+
+TEST(Penalty, copies_of_a_contact_do_not_outweigh_others_nearby) {
+  Random random{std::mt19937(10)};
+  for (int round = 0; round < 20; ++round) {
+    std::vector<Contact> some = random.contacts(6, 0.004);
+    std::vector<Contact> more = some;
+    for (std::size_t i = 0; i < 6; ++i) more.insert(more.end(), 10 * i, some[i]);
+    const Penalty a = feel(some);
+    const Penalty b = feel(more);
+    EXPECT_NEAR(norm(a.wrench.force_N - b.wrench.force_N), 0, 1e-12) << round;
+    EXPECT_NEAR(norm(a.wrench.torque_Nm - b.wrench.torque_Nm), 0, 1e-14) << round;
+  }
+}
+
+TEST(Penalty, contacts_that_meet_become_one_without_a_step) {
+  const Contact still = at({0, 0, 0}, {0, 0, 1}, 0.0004),
+                other = at({0.004, 0, 0}, {0, 0, 1}, 0.0003);
+  const auto torque_at = [&](double x) {
+    return feel({still, other, at({x, 0, 0}, {0, 0, 1}, 0.0004)}).wrench.torque_Nm.y;
+  };
+  const double met = feel({still, other}).wrench.torque_Nm.y;
+  EXPECT_NEAR(torque_at(1e-9), met, 1e-8);
+  double before = torque_at(0.002);
+  for (double x = 0.002; x > 0; x -= 1e-6) {
+    const double now = torque_at(x);
+    EXPECT_NEAR(now, before, 2e-6);
+    before = now;
+  }
 }
 
 TEST(Penalty, coincident_contacts_hide_none_behind_them) {
