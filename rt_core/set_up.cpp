@@ -104,7 +104,8 @@ Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKin
   out.contacts = arena.array<Contact>(limits.contacts);
   out.felt = arena.array<force::Felt>(limits.contacts);
   out.ranking = arena.array<force::Ranked>(limits.contacts);
-  out.copies = arena.array<force::Place>(limits.clusters);
+  // Contacts that are no copies share no corner with others.
+  out.copies = arena.array<force::Place>(force::Spot::kCorners * limits.contacts);
   out.places = arena.array<force::Place>(limits.clusters);
   if (kind == EngineKind::levels) {
     lay_out_levels(arena, limits, out);

@@ -4,7 +4,7 @@
 namespace palpate::force {
 namespace {
 
-constexpr int kMostProbes = 16;  // beyond that a corner finds no room
+constexpr int kMostProbes = 64;  // beyond that a corner finds no room; half full takes up to 50
 
 /// Corners farther out than this have no number; the masses of contacts there are kept.
 constexpr double kFarthest = 1 << 30;
