@@ -34,7 +34,8 @@ bool sound(const Scene& scene, const Limits& limits) noexcept {
     if (pair.a >= bodies || pair.b >= bodies || pair.a == pair.b) return false;
   }
   return limits.nodes >= scene.pairs.size() && limits.nodes < levels::kNone &&
-         limits.contacts > 0 && limits.clusters > 0;
+         limits.contacts > 0 && limits.contacts < force::Spot::kNone / force::Spot::kCorners &&
+         limits.clusters > 0;
 }
 
 /// All memory of an engine: counted, handed out and found again by the same lines.
@@ -104,7 +105,7 @@ Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKin
   out.contacts = arena.array<Contact>(limits.contacts);
   out.felt = arena.array<force::Felt>(limits.contacts);
   out.ranking = arena.array<force::Ranked>(limits.contacts);
-  // Contacts that are no copies share no corner with others.
+  // Contacts that are nobody's copies have corners of their own.
   out.copies = arena.array<force::Place>(force::Spot::kCorners * limits.contacts);
   out.places = arena.array<force::Place>(limits.clusters);
   if (kind == EngineKind::levels) {

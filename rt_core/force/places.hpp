@@ -22,11 +22,10 @@ struct Place {
 /// Where a contact has brought its mass: the corners of its tetrahedron, a sixth of a cube.
 struct Spot {
   static constexpr std::size_t kCorners = 4;
-  static constexpr std::uint32_t kNone =
-      UINT32_MAX;  ///< a corner that found no room, or needs none
+  static constexpr std::uint32_t kNone = UINT32_MAX;  ///< no room was found, or none is needed
 
-  std::array<double, kCorners> share{1, 0, 0, 0};  ///< add up to 1
-  std::array<std::uint32_t, kCorners> place{kNone, kNone, kNone, kNone};
+  std::array<double, kCorners> share{1, 0, 0, 0};                         ///< add up to 1
+  std::array<std::uint32_t, kCorners> place{kNone, kNone, kNone, kNone};  ///< in the table
 };
 
 /// A grid that remembers only the corners that contacts come near: a hash table over borrowed
@@ -40,6 +39,7 @@ struct Spot {
 class Places {
  public:
   Places() = default;
+  /// @param table  less than Spot::kNone; twice as many as corners in use are found at once
   explicit Places(std::span<Place> table) noexcept : table_(table) {}
 
   /// Tells where the table is now: its values stay.
@@ -48,11 +48,10 @@ class Places {
   /// Begins a tick with another grid. @param width_m  of a cube; 0: every contact keeps its mass
   void begin(double width_m) noexcept;
 
-  /// Brings a contact. O(1)
+  /// Brings a contact. O(1): at most 64 looks for each of four corners
   /// @param point_m  in the axes of the grid
   /// @param mass     of the contact, >= 0
-  /// @param part     what the contact may have of it: all, or less where it is one of several
-  /// copies
+  /// @param part     what it may have of that: all, or less where it is one of several copies
   Spot add(Vec3d point_m, double mass, double part) noexcept;
 
   /// What is handed out, after all have brought theirs, for a contact that was brought with this

@@ -67,7 +67,7 @@ struct Random {
   }
 };
 
-/// The header's formula pair by pair, with a map in place of the hash table.
+/// The header's formula pair by pair, with tables that have room for all.
 Wrench by_definition(const std::vector<Contact>& contacts, const Settings& s) {
   const std::size_t n = contacts.size();
   std::vector<Place> fine(1u << 16), table(1u << 16);
