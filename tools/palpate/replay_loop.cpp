@@ -10,6 +10,7 @@
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/scene_engine.hpp"
 #include "tools/palpate/scene_forces.hpp"
+#include "tools/palpate/surface_points.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -30,6 +31,7 @@ class Replay {
         scene_(forces_.for_engine()),
         track_(track),
         engine_(scene_),
+        surface_points_(engine_.images(), scene_.pairs),
         unlimited_(!options.budget_units && !scene.budget_us),
         clock_(options.processor_time ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC) {
     if (options.budget_units) budget_.units = *options.budget_units;
@@ -53,7 +55,7 @@ class Replay {
       TickResult result = complete_tick(i, poses, row.time_ns);
       forces_.add(row.t_s, poses, result);
       note(result, row);
-      if (listeners.contacts) listeners.contacts(i, result.contacts);
+      if (listeners.contacts) listeners.contacts(i, surface_points_.of(result.contacts, poses));
       if (listeners.progress && i % kShowEvery == 0) {
         listeners.progress(double(i) / double(track_.ticks.size()));
       }
@@ -101,6 +103,7 @@ class Replay {
   config::Scene scene_;
   const PoseTrack& track_;
   SceneEngine engine_;
+  SurfacePoints surface_points_;
   bool unlimited_;
   clockid_t clock_;
   Budget budget_;

@@ -28,7 +28,8 @@ struct ReplayOptions {
 /// What a replay tells while it runs; each may be empty.
 struct ReplayListeners {
   std::function<void(double done)> progress;
-  /// The contacts of each tick of the last repetition, in order; called between ticks.
+  /// The contacts of each tick of the last repetition, in order, with points on the surfaces
+  /// (SurfacePoints); called between ticks.
   std::function<void(std::size_t tick, std::span<const Contact>)> contacts;
 };
 

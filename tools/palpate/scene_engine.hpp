@@ -40,6 +40,9 @@ class SceneEngine {
   /// [bodies] where the scene puts them.
   [[nodiscard]] std::vector<Pose> start_poses() const;
 
+  /// [bodies] lives as long as this.
+  [[nodiscard]] std::span<const ImageView> images() const { return bodies_; }
+
   /// content_sha256 of the scene's images.
   [[nodiscard]] std::vector<std::array<std::uint8_t, 32>> image_hashes() const;
 
