@@ -13,6 +13,8 @@ namespace {
 constexpr double kOtherUpTo = 1.5;
 /// Of the extent of a - b.
 constexpr double kCoplanar = 1e-13;
+/// Cosine between normals of faces that lie in one plane.
+constexpr double kOnePlane = 1 - 1e-9;
 
 /// The narrowest extent of a - b beyond the origin seen so far, and the face it was seen through.
 struct Best {
@@ -136,6 +138,37 @@ double expand(const HullPair& pair, Polytope& polytope, Best& best, bool& out_se
   return lower;
 }
 
+/// Of triangles in one plane, the one that the origin projects into: its corners are the deepest
+/// points.
+class Deepest {
+ public:
+  void add(const DifferencePoint& p, const DifferencePoint& q, const DifferencePoint& r,
+           Best& best) noexcept {
+    const Vec3d points[3] = {p.point, q.point, r.point};
+    const double away2 = nearest_on_triangle(points, 0, 1, 2).squared;
+    if (away2 >= least_) return;
+    least_ = away2;
+    best.corners[0] = p;
+    best.corners[1] = q;
+    best.corners[2] = r;
+  }
+
+ private:
+  double least_ = std::numeric_limits<double>::infinity();
+};
+
+/// Of the faces that are equally low.
+void keep_deepest(const HullPair& pair, const Polytope& polytope, Best& best) noexcept {
+  const double low = best.extent + kDistanceGap * extent(pair);
+  Deepest deepest;
+  for (std::uint32_t f = 0; f < polytope.face_count; ++f) {
+    const PolytopeFace& face = polytope.faces[f];
+    if (!face.live || face.offset > low || dot(face.normal, best.outward) < kOnePlane) continue;
+    deepest.add(polytope.vertices[face.vertices[0]], polytope.vertices[face.vertices[1]],
+                polytope.vertices[face.vertices[2]], best);
+  }
+}
+
 /// The narrowest extent apart from the best one, while it is of interest.
 Best expand_apart(const HullPair& pair, Polytope& polytope, const Best& best) noexcept {
   constexpr double kApart = 0.5;
@@ -156,6 +189,20 @@ Best expand_apart(const HullPair& pair, Polytope& polytope, const Best& best) no
     if (!add_vertex(polytope, lowest, w, kCoplanar * extent(pair))) break;
   }
   return other;
+}
+
+/// Of the simplex that distance() ended with: it lies in the plane where a - b does.
+void keep_deepest(const HullPair& pair, const Cache& cache, Best& best) noexcept {
+  if (cache.count == 0) return;
+  DifferencePoint corners[4];
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const std::uint32_t k = i < cache.count ? i : cache.count - 1;
+    PALPATE_ASSERT(cache.a[k] < pair.a.count && cache.b[k] < pair.b.count);
+    corners[i] = difference(pair, cache.a[k], cache.b[k]);
+  }
+  Deepest deepest;
+  for (std::uint32_t i = 0; i < 4; ++i)
+    deepest.add(corners[i], corners[(i + 1) % 4], corners[(i + 2) % 4], best);
 }
 
 /// The narrower of the two sides of what is flat, straight or a point.
@@ -192,9 +239,11 @@ Penetration penetration(const Hull& a, const Hull& b, const RelativePose& b_in_a
   if (s.count == 4 && start(scratch.polytope, s.corners)) {
     bool settled = false;
     lower = expand(pair, scratch.polytope, best, settled) - rounding(pair);
+    if (settled) keep_deepest(pair, scratch.polytope, best);
     if (settled && ways == Ways::two) other = expand_apart(pair, scratch.polytope, best);
   } else {
     measure_flat(pair, s, best);
+    keep_deepest(pair, cache, best);
   }
   Penetration out;
   out.depth = best.extent > 0 ? best.extent : 0;

@@ -11,6 +11,10 @@ namespace {
 
 using image::Piece;
 
+/// Distances that differ by no more, in units, are equal: often they end at one and the same
+/// vertex.
+constexpr double kEqual = 1e-6;
+
 void allow(Node& node, bool a, bool b) noexcept {
   if (a) set(node, kRefineA);
   if (b) set(node, kRefineB);
@@ -118,7 +122,7 @@ LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops)
 void refine_hidden(const Work& work, const Node& node, const convex::Distance& d,
                    const LeafContact& contact, Detail& missing) noexcept {
   const PairState& pair = work.pair_of(node);
-  if (work.dives(node) || pair.nearest <= d.distance) return;
+  if (work.dives(node) || pair.nearest <= d.distance + kEqual) return;
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
   missing.refine_a = contact.hidden_a && is_simplified(a) && a.children != 0;

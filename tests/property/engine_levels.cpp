@@ -13,6 +13,7 @@
 #include "tests/support/brute_force.hpp"
 #include "tests/support/coarse_bodies.hpp"
 #include "tests/support/effort.hpp"
+#include "tests/support/placements.hpp"
 
 namespace palpate::test {
 namespace {
@@ -54,6 +55,18 @@ TEST(EngineLevels, certificate_holds_whatever_is_left_out) {
       }
     }
   }
+}
+
+// Neighbouring pieces are often equally near, by a vertex that they share: rounding, other in every
+// place, must not decide what is felt of them.
+TEST(EngineLevels, wrench_turns_with_the_world_where_every_tick_is_a_jump) {
+  BakedScene one({bodies().a.view, bodies().b.view}, {{0, 1}}, with_s0(0.025));
+  BakedScene other({bodies().a.view, bodies().b.view}, {{0, 1}}, with_s0(0.025));
+  std::mt19937 rng(5);
+  expect_wrench_turns_with_the_world(one, other, 300, [&](int i) {
+    const Vec3d direction = random_unit(rng);
+    return Pose{(1.8 + 0.0002 * i) * direction, turn(3.0 * random_unit(rng))};
+  });
 }
 
 /// An ellipsoid slides and rolls over a golf ball, 0.4 delta above it.

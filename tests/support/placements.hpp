@@ -50,14 +50,20 @@ void for_each_placement(const BakedBody& a, const BakedBody& b, double delta, in
   }
 }
 
-/// One motion in two engines of one scene of two bodies, in the second with both bodies moved
-/// rigidly: the wrench turns with them.
-inline void expect_wrench_turns_with_the_world(BakedScene& one, BakedScene& other) {
+/// A slide of one bumpy ball (radius 1) over another (radius 0.8).
+inline Pose slid(int i) {
+  return {{1.81 - 0.0002 * i, 0.1, 0.002 * i}, turn({0.3 + 0.003 * i, 0.2, 0.001 * i})};
+}
+
+/// One motion, pose_at(0) to pose_at(ticks - 1), in two engines of one scene of two bodies, in the
+/// second with both bodies moved rigidly: the wrench turns with them.
+template <class PoseAt>
+void expect_wrench_turns_with_the_world(BakedScene& one, BakedScene& other, int ticks,
+                                        PoseAt pose_at) {
   const Pose world{{3, -2, 5}, turn({0.7, -1.1, 0.4})};
   const Mat3d r = rotation(world.orientation);
-  for (int i = 0; i < 50; ++i) {
-    const Pose poses[2] = {
-        {{1.81 - 0.0002 * i, 0.1, 0.002 * i}, turn({0.3 + 0.003 * i, 0.2, 0.001 * i})}, {}};
+  for (int i = 0; i < ticks; ++i) {
+    const Pose poses[2] = {pose_at(i), {}};
     Pose moved[2];
     for (int k = 0; k < 2; ++k) {
       moved[k] = {world.position_m + r * poses[k].position_m,

@@ -49,6 +49,10 @@ void expect_sound(const Hull& a, const Hull& b, const RelativePose& pose, const 
       deepest = std::min(deepest, dot(vec_cast<long double>(p.normal), real_a(a, i)));
     }
     ASSERT_NEAR(dot(p.normal, p.point_a), static_cast<double>(deepest), 2e-7 * unit);
+    // And point_a is above b, not beside it.
+    const Shape foot = point(p.point_b);
+    Cache beside;
+    ASSERT_LE(distance(foot.hull(), b, pose, kExact, beside).distance, 1e-6 * unit);
   }
 }
 
