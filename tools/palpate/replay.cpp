@@ -179,7 +179,8 @@ void add_replay(CLI::App& app) {
   command->add_option("SCENE", a->scene, "scene file (TOML)")->required();
   command->add_option("--poses", a->poses, "recorded poses (CSV)")->required();
   command->add_option("-o,--output", a->ticks, "write a row a tick (CSV)")->required();
-  command->add_option("--contacts", a->contacts, "write a row a contact (CSV)");
+  command->add_option("--contacts", a->contacts,
+                      "write a row a contact, with points on both surfaces (CSV)");
   command->add_option("--engine", a->engine, "in place of the scene's engine")
       ->check(CLI::IsMember({"levels", "regions"}));
   command->add_flag("--exact", a->exact,
