@@ -41,7 +41,9 @@ struct PenetrationScratch {
 ///
 /// Departures: faces have signed offsets, so that the polytope need not hold the origin; every
 /// direction looked at bounds the depth from above by the hulls' own extent along it, so that
-/// whatever ends the search, the answer separates.
+/// whatever ends the search, the answer separates; of the triangles that a face of a - b is made
+/// of, the points come from the one that the origin projects into, so that rounding does not choose
+/// them.
 ///
 /// Never fails: flat and identical hulls, concentric hulls and one hull inside another give a
 /// finite depth and a unit normal; where the cap is met the answer is the best separating

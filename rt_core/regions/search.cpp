@@ -75,6 +75,7 @@ class Search {
   /// Looks at everything within the limit, and keeps what crosses.
   void collect(const levels::PairState& pair, const image::Region& region,
                CrossingList& list) noexcept {
+    if (!pace_.go_on()) return;
     pair_ = &pair;
     crossings_ = &list;
     visit_root(child_name(region.parent, region.slot));

@@ -94,6 +94,23 @@ TEST(RegionsBudget, every_budget_gives_a_true_certificate) {
   EXPECT_LT(last_mean, 1e-5);
 }
 
+/// Overlaps are looked at when searches have ended. (After a jump the old witnesses are measured
+/// too, whatever the budget: no contact is lost for want of sixteen pairs.)
+TEST(RegionsBudget, overlaps_take_no_more_than_a_batch_beyond_the_units) {
+  constexpr int kUntilJump = 24;
+  constexpr std::uint64_t kBatch = 8;
+  for (const std::uint64_t units : {0u, 10u, 200u, 1000u, 3000u}) {
+    BakedScene scene = scene_with(kSettings);
+    for (int i = 0; i < kUntilJump; ++i) {
+      Pose deep = motion(i);
+      deep.position_m.x -= 0.1;
+      const Pose poses[2] = {deep, {}};
+      const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
+      EXPECT_LE(r.queries, units + kBatch) << units << " units, tick " << i;
+    }
+  }
+}
+
 TEST(RegionsBudget, force_tolerance_is_kept_and_saves_work) {
   BakedScene exact = scene_with(kSettings);
   for (const double tolerance_N : {3.0, 10.0, 30.0}) {
