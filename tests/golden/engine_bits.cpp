@@ -63,7 +63,7 @@ const Case kCases[] = {
     {"regions, 100 units",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      100,
-     0x66dcc4cc76864510},
+     0x8a2dd4af4b118be0},
     {"regions, tolerance",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .force_tolerance_N = 3},
      kUnlimited,

@@ -198,6 +198,22 @@ TEST(RegionsBudget, deadline_ends_refinement) {
   expect_certified(r, truth()[0]);
 }
 
+TEST(RegionsBudget, deadlines_that_have_always_passed_do_not_hide_contacts_for_ever) {
+  BakedScene scene = scene_with(kSettings);
+  CountingClock clock;
+  std::size_t found = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Pose poses[2] = {motion(i), {}};
+    const TickResult r =
+        tick_or_fail(*scene.engine, poses,
+                     {.clock_ns = CountingClock::read, .clock_context = &clock, .deadline_ns = 0});
+    EXPECT_TRUE(r.certificate.truncated_by_time);
+    expect_certified(r, truth()[static_cast<std::size_t>(i)]);
+    found = r.contacts.size();
+  }
+  EXPECT_GT(found, 0u);
+}
+
 TEST(RegionsBudget, few_contacts_are_a_reported_graceful_stop) {
   BakedScene scene = scene_with(kSettings, {.contacts = 1});
   bool met = false;
