@@ -110,8 +110,8 @@ struct Limits {
 };
 
 /// What one tick may spend. Refinement ends at whichever limit is met first; the answer is valid
-/// all the same. However early the deadline, the regions engine searches for 64 units a tick (some
-/// 5 us), so that contacts are found in the end.
+/// all the same. However early the deadline, the regions engine searches for 64 units a tick (a few
+/// microseconds), so that contacts are found in the end.
 struct Budget {
   std::uint64_t units = std::numeric_limits<std::uint64_t>::max();  ///< see TickResult::queries
   std::uint64_t (*clock_ns)(void* context) = nullptr;  ///< a monotonic clock, or null: units only

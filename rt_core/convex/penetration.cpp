@@ -128,8 +128,8 @@ double expand(const HullPair& pair, Polytope& polytope, Best& best, bool& out_se
                                         polytope.vertices[face.vertices[2]]};
     const DifferencePoint w = support(pair, face.normal, corners[0]);
     const double e = dot(face.normal, w.point);
-    // A face of a - b itself is kept over an equal direction seen before: its corners are the
-    // deepest points.
+    // A face of a - b itself is kept over an equal direction seen before: its normal is the exact
+    // one.
     const bool settled = e - face.offset <= kDistanceGap * extent(pair);
     if (settled || e < best.extent) keep(best, e, face.normal, corners);
     out_settled = settled;

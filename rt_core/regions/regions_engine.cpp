@@ -28,7 +28,7 @@ constexpr double kJumpDelta = 2;
 constexpr float kStep = 0.3f;
 constexpr float kLastStep = 0.1f;
 /// Done in every tick, however late it is: one that does not get to search at all would find
-/// nothing in the next one either. Some 5 us; a first pair takes 20 to 60.
+/// nothing in the next one either.
 constexpr std::uint64_t kLeastUnits = 64;
 /// Where an interval may stay open, a search leaves this share of that to motion, unless it is
 /// fast.

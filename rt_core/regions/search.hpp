@@ -53,16 +53,16 @@ class Pace {
  public:
   explicit Pace(Meter& meter) noexcept : meter_(meter) {}
   void charge(std::uint64_t units) noexcept { meter_.charge(units); }
-  /// The next so many units may take what time they need.
+  /// The next so many units may take what time they need: the clock is not read before.
   void grant(std::uint64_t units) noexcept {
-    granted_ = meter_.used() + units;
+    next_reading_ = meter_.used() + units;
     time_ended_ = false;
   }
   /// False from the moment at which the budget is used up.
   [[nodiscard]] bool go_on() noexcept {
     if (units_ended_ || time_ended_) return false;
     units_ended_ = meter_.out_of_units();
-    if (meter_.used() >= next_reading_ && meter_.used() >= granted_) {
+    if (meter_.used() >= next_reading_) {
       next_reading_ = meter_.used() + kUnitsPerReading;
       time_ended_ = meter_.out_of_time();
     }
@@ -75,7 +75,6 @@ class Pace {
  private:
   Meter& meter_;
   std::uint64_t next_reading_ = 0;
-  std::uint64_t granted_ = 0;
   bool units_ended_ = false;
   bool time_ended_ = false;
 };

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "rt_core/regions/search.hpp"
 #include "tests/support/allocation_trap.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/shapes.hpp"
@@ -98,7 +99,6 @@ TEST(RegionsBudget, every_budget_gives_a_true_certificate) {
 /// too, whatever the budget: no contact is lost for want of sixteen pairs.)
 TEST(RegionsBudget, overlaps_take_no_more_than_a_batch_beyond_the_units) {
   constexpr int kUntilJump = 24;
-  constexpr std::uint64_t kBatch = 8;
   for (const std::uint64_t units : {0u, 10u, 200u, 1000u, 3000u}) {
     BakedScene scene = scene_with(kSettings);
     for (int i = 0; i < kUntilJump; ++i) {
@@ -106,7 +106,7 @@ TEST(RegionsBudget, overlaps_take_no_more_than_a_batch_beyond_the_units) {
       deep.position_m.x -= 0.1;
       const Pose poses[2] = {deep, {}};
       const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
-      EXPECT_LE(r.queries, units + kBatch) << units << " units, tick " << i;
+      EXPECT_LE(r.queries, units + regions::kBatchUnits) << units << " units, tick " << i;
     }
   }
 }
