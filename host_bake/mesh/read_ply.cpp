@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // PLY as Greg Turk's "The PLY Polygon File Format" (1994) has it: elements in any order, properties
-// of any number type, of which x, y, z of `vertex` and the index list of `face` are used.
+// of any number type, of which x, y, z of `vertex` and the index lists of `face` are used; and of
+// `tristrips`, as files of scanned models have them in place of faces.
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -22,7 +24,7 @@ struct Property {
 };
 
 struct Element {
-  enum class Kind { vertex, face, other } kind = Kind::other;
+  enum class Kind { vertex, face, strips, other } kind = Kind::other;
   std::size_t count = 0;
   std::vector<Property> properties;
 };
@@ -66,6 +68,10 @@ std::size_t size_of(Number type) {
   }
 }
 
+bool is_surface(Element::Kind kind) {
+  return kind == Element::Kind::face || kind == Element::Kind::strips;
+}
+
 Use use_of(Element::Kind kind, const Property& property, std::string_view name) {
   if (kind == Element::Kind::vertex && !property.count_type) {
     if (name == "x") return Use::x;
@@ -74,7 +80,7 @@ Use use_of(Element::Kind kind, const Property& property, std::string_view name) 
   }
   const bool indices = name == "vertex_indices" || name == "vertex_index";
   const bool list = property.count_type && !is_float(property.type);
-  return kind == Element::Kind::face && indices && list ? Use::indices : Use::none;
+  return is_surface(kind) && indices && list ? Use::indices : Use::none;
 }
 
 Encoding read_format(Text& text) {
@@ -90,6 +96,7 @@ Element read_element(Text& text) {
   const std::string_view name = text.word_on_line();
   if (name == "vertex") element.kind = Element::Kind::vertex;
   if (name == "face") element.kind = Element::Kind::face;
+  if (name == "tristrips") element.kind = Element::Kind::strips;
   const std::int64_t count = text.integer(text.word_on_line(), "count");
   if (count < 0 || static_cast<std::uint64_t>(count) > text.left()) {
     text.refuse("the count " + std::to_string(count) + " does not fit the size of the file",
@@ -170,13 +177,13 @@ class Stream {
   }
 
   /// A count or an index: no type wider than 32 bits, so nothing is lost in a double.
-  std::uint32_t index(Number type) {
+  std::uint32_t index(Number type) { return whole(number(type)); }
+
+  /// An index of a list of strips; none where the list has -1: the next strip begins there.
+  std::optional<std::uint32_t> strip_index(Number type) {
     const double value = number(type);
-    if (!(value >= 0 && value < 4294967295.0 &&
-          value == static_cast<double>(static_cast<std::uint32_t>(value)))) {
-      text_.refuse("a count or index that is negative or not whole", "export the mesh again");
-    }
-    return static_cast<std::uint32_t>(value);
+    if (value == -1) return std::nullopt;
+    return whole(value);
   }
 
   /// Throws unless `count` numbers of the type can still follow.
@@ -186,6 +193,14 @@ class Stream {
   }
 
  private:
+  std::uint32_t whole(double value) const {
+    if (!(value >= 0 && value < 4294967295.0 &&
+          value == static_cast<double>(static_cast<std::uint32_t>(value)))) {
+      text_.refuse("a count or index that is negative or not whole", "export the mesh again");
+    }
+    return static_cast<std::uint32_t>(value);
+  }
+
   Text& text_;
   Bytes bytes_;
   bool ascii_;
@@ -205,13 +220,37 @@ void read_list(Stream& in, const Property& property, Soup& soup) {
   if (polygon) soup.end_polygon();
 }
 
+/// Each index makes a triangle with the two before it, turned round every second time. Those that
+/// name a vertex twice only lead from one part of a strip to the next.
+void read_strips(Stream& in, const Property& property, Soup& soup) {
+  const std::uint32_t count = in.index(*property.count_type);
+  in.require(count, property.type);
+  std::array<std::uint32_t, 2> last{};
+  std::size_t length = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::optional<std::uint32_t> index = in.strip_index(property.type);
+    if (!index) {
+      length = 0;
+      continue;
+    }
+    if (length >= 2 && last[0] != last[1] && last[0] != *index && last[1] != *index) {
+      const std::size_t turned = length % 2;
+      soup.corners.insert(soup.corners.end(), {last[turned], last[1 - turned], *index});
+      soup.end_polygon();
+    }
+    last = {last[1], *index};
+    ++length;
+  }
+}
+
 void read_items(Stream& in, const Element& element, Soup& soup) {
   // No property, no data: the count alone must not cost time.
   for (std::size_t i = 0; i < element.count && !element.properties.empty(); ++i) {
     Point p{};
     for (const Property& property : element.properties) {
       if (property.count_type) {
-        read_list(in, property, soup);
+        const bool strips = element.kind == Element::Kind::strips && property.use == Use::indices;
+        (strips ? read_strips : read_list)(in, property, soup);
         continue;
       }
       const double value = in.number(property.type);
@@ -236,7 +275,7 @@ void require_usable(const Header& header, const Text& text) {
     if (vertex && !(has(element, Use::x) && has(element, Use::y) && has(element, Use::z))) {
       text.refuse("vertices without x, y and z", "export the mesh again");
     }
-    if (element.kind == Element::Kind::face && !has(element, Use::indices)) {
+    if (is_surface(element.kind) && !has(element, Use::indices)) {
       text.refuse("faces without vertex_indices", "export the mesh again as triangles");
     }
   }

@@ -156,6 +156,28 @@ TEST(Read, Ply_number_types_are_all_read) {
   }
 }
 
+/// A tetrahedron as one strip: the triangles 0 1 2, 2 1 3, 2 3 0, 0 3 1.
+std::string strips_ply(const std::string& lists) {
+  return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+         "property float z\nelement tristrips " +
+         std::to_string(std::ranges::count(lists, '\n')) +
+         "\nproperty list int int vertex_indices\nend_header\n"
+         "0 0 0\n0 1 0\n1 0 0\n0 0 1\n" +
+         lists;
+}
+
+TEST(Read, Ply_strips_become_triangles) {
+  const Mesh whole = read_as(strips_ply("6 0 1 2 3 0 1\n"), ".ply").mesh;
+  EXPECT_EQ(whole.faces.size(), 4U);
+  EXPECT_TRUE(check(whole).bakeable());
+  for (const char* lists : {"3 0 1 2\n3 2 1 3\n3 2 3 0\n3 0 3 1\n",  // a list each
+                            "9 0 1 2 3 -1 2 3 0 1\n",                // two strips in one list
+                            "10 0 1 2 3 3 2 2 3 0 1\n"}) {  // led on by triangles without area
+    SCOPED_TRACE(lists);
+    EXPECT_EQ(surface(read_as(strips_ply(lists), ".ply").mesh), surface(whole));
+  }
+}
+
 TEST(Read, Polygons_become_triangles) {
   const ReadMesh read = read_as("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n", ".obj");
   EXPECT_EQ(read.file_faces, 1U);
@@ -240,6 +262,10 @@ TEST(Read, Bad_files_are_refused_with_place_and_mend) {
       {replaced(ply, "float z", "quad z"), ".ply", "number type"},
       {replaced(ply, "ascii", "text"), ".ply", "PLY format"},
       {replaced(ply, "end_header", "end"), ".ply", "end_header"},
+      {strips_ply("6 0 1 2 3 0 4\n"), ".ply", "out of range"},
+      {strips_ply("6 0 1 2 3 0 -2\n"), ".ply", "negative"},
+      {replaced(strips_ply("6 0 1 2 3 0 1\n"), "list int int", "list int float"), ".ply",
+       "vertex_indices"},
       {"plain text\n", ".ply", "not a PLY"},
       {to_stl_binary(cube()) + "x", ".stl", "header counts 12"},
       {replaced(to_stl_ascii(cube()), "endloop", "vertex 0 0 0\nendloop"), ".stl",
