@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/search.hpp"
 
+#include <cstddef>
 #include <limits>
 
 #include "rt_core/base/assert.hpp"
@@ -51,6 +52,13 @@ float apart_squared(const Centre& centre, const RegionNode& node, std::uint32_t 
   const float y = node.centre[1][slot] - centre.y;
   const float z = node.centre[2][slot] - centre.z;
   return x * x + y * y + z * z;
+}
+
+/// Trees of a scene are larger than the near caches.
+void fetch(const RegionNode& node) noexcept {
+  constexpr std::size_t kLine = 64;
+  const auto* bytes = reinterpret_cast<const std::byte*>(&node);
+  for (std::size_t i = 0; i < sizeof(RegionNode); i += kLine) __builtin_prefetch(bytes + i);
 }
 
 class Search {
@@ -124,11 +132,13 @@ class Search {
         (over_b.leaf != 0 || volume_a_ * volume_of(over_a, slot_a) > volume_of(over_b, slot_b));
     if (split_a) {
       const std::uint32_t node = over_a.first + slot_a;
+      fetch(frame_.a->region_nodes[node]);
       const std::uint32_t near = expand(box_of(over_b, slot_b), frame_.b_to_a,
                                         frame_.a->region_nodes[node], frame_.scale2_a);
       keep_children_of_a(node, pair.b, over_b.leaf != 0, near);
     } else {
       const std::uint32_t node = over_b.first + slot_b;
+      fetch(frame_.b->region_nodes[node]);
       const std::uint32_t near = expand(box_of(over_a, slot_a), frame_.a_to_b,
                                         frame_.b->region_nodes[node], frame_.scale2_b);
       keep_children_of_b(pair.a, node, over_a.leaf != 0, near);
@@ -226,6 +236,8 @@ class Search {
 
   void add_pair(std::uint32_t a, std::uint32_t b, float squared) noexcept {
     if (pending_ == kBatch) flush();
+    __builtin_prefetch(&frame_.a->region_triangles[a]);
+    __builtin_prefetch(&frame_.b->region_triangles[b]);
     scratch_.batch_a[pending_] = a;
     scratch_.batch_b[pending_] = b;
     scratch_.batch_squared[pending_] = squared;
