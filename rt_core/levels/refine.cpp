@@ -24,7 +24,7 @@ void wait_for_split(Work& work, std::uint32_t index) noexcept {
   const Node& node = work.tree[index];
   const PairState& pair = work.pair_of(node);
   const double certain = certain_now(pair, node);
-  work.wait({rank(work, node, certain), certain * pair.unit_m, index, true});
+  work.wait({rank(work, node, certain), certain * pair.unit_m, index, !pair.searches});
 }
 
 bool is_below(const ImageView& image, std::uint32_t piece, std::uint32_t top) noexcept {
@@ -194,6 +194,7 @@ void measure(Work& work, std::uint32_t index) noexcept {
   Node& node = work.tree[index];
   const PairState& pair = work.pair_of(node);
   set(node, kMeasured);
+  if (pair.searches) set(node, kLooked);
   const bool leaves = piece_a(pair, node).children == 0 && piece_b(pair, node).children == 0;
   if (!leaves && work.only_culls(node)) {
     measure_bound(work, index);

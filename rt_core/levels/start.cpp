@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/start.hpp"
 
+#include <bit>
+
 namespace palpate::levels {
 namespace {
 
@@ -16,9 +18,15 @@ constexpr double kSphereRounding = 1e-9;
 constexpr double kFrontOverBudget = 1.25;
 /// One that is larger is cut back to this: what is left of the budget refines where it is felt.
 constexpr double kFrontCut = 0.5;
+/// A budget of fewer units counts as this many. What is near about one contact has to fit into the
+/// front, measured in turns where a tick does not do for all of it: a smaller cut would split its
+/// way down to the contact anew in each tick, through the largest hulls, and not arrive.
+constexpr double kLeastAffordable = 32;
 /// It gives up what keeps no contact nearer than these shares of delta, one
 /// after the other, and then one level of all after the other.
 constexpr double kCutFrom[] = {1, 0.75, 0.5, 0.25, 0};
+/// While a first contact is looked for, a front of fewer nodes is not cut back.
+constexpr std::size_t kSearchedFront = 512;
 /// The front's nodes lie anywhere in the pool: this many are on their way from memory.
 constexpr std::size_t kAhead = 8;
 
@@ -48,6 +56,7 @@ void rise_if_apart(Work& work, PairState& pair) noexcept {
 }
 
 void place(Work& work, PairState& pair) noexcept {
+  pair.searches = work.may_end && !pair.fresh && pair.nearest >= pair.delta;
   pair.nearest = pair.delta;
   pair.apart = -kInfinity;
   const Node& root = work.tree[pair.root];
@@ -139,14 +148,39 @@ bool raise_near(Work& work, double from, double most) noexcept {
   return raised;
 }
 
+bool any_searches(const Work& work) noexcept {
+  for (const PairState& pair : work.memory.pairs) {
+    if (pair.searches) return true;
+  }
+  return false;
+}
+
+/// Where a contact is kept none is looked for. Where every near node has been looked at the next
+/// round begins.
+void begin_searches(Work& work) noexcept {
+  if (!any_searches(work)) return;
+  bool round_over = true;
+  for (const std::uint32_t index : work.tree.front()) {
+    const Node& node = work.tree[index];
+    PairState& pair = work.pair_of(node);
+    if (!pair.searches || !work.is_near(node)) continue;
+    if (node.contact != 0 && remeasured(pair, node).distance < pair.delta) pair.searches = false;
+    if ((node.flags & kLooked) == 0) round_over = false;
+  }
+  if (!round_over) return;
+  for (const std::uint32_t index : work.tree.front()) clear(work.tree[index], kLooked);
+}
+
 bool is_affordable(const Work& work, double most) noexcept {
   return static_cast<double>(work.tree.front().size()) <= most || count_near(work) <= most;
 }
 
 /// What is farthest goes first: it is felt least.
 void cut_back(Work& work) noexcept {
-  const double affordable = work.meter.queries_affordable(work.memory.query_ns);
+  const double in_budget = work.meter.queries_affordable(work.memory.query_ns);
+  const double affordable = in_budget > kLeastAffordable ? in_budget : kLeastAffordable;
   if (is_affordable(work, kFrontOverBudget * affordable)) return;
+  if (any_searches(work) && work.tree.front().size() < kSearchedFront) return;
   const double most = kFrontCut * affordable;
   carry_contacts_up(work);
   for (const double from : kCutFrom) {
@@ -166,10 +200,24 @@ double known_distance(const PairState& pair, const Node& node) noexcept {
   return most < pair.delta ? most : pair.delta;
 }
 
+/// Of a search: what has been measured is split at once; then the smallest pieces go first, of
+/// those of a size what is nearest; and what this round has looked at comes last.
+double search_rank(const PairState& pair, const Node& node, double lower) noexcept {
+  constexpr double kStep = 8;             // more than bounds of near nodes can differ by
+  constexpr double kLast = 2048 * kStep;  // beyond every exponent
+  if ((node.flags & kMeasured) != 0) return -kStep;
+  if ((node.flags & kLooked) != 0) return kLast + lower;
+  const double size = pair.scale_a * static_cast<double>(piece_a(pair, node).radius) +
+                      pair.scale_b * static_cast<double>(piece_b(pair, node).radius);
+  const std::uint64_t exponent = std::bit_cast<std::uint64_t>(size) >> 52;
+  return kStep * static_cast<double>(exponent) + lower;
+}
+
 }  // namespace
 
 void start(Work& work) noexcept {
   for (PairState& pair : work.memory.pairs) place(work, pair);
+  begin_searches(work);
   cut_back(work);
   std::uint64_t kept = 0;
   const std::span<const std::uint32_t> front = work.tree.front();
@@ -178,6 +226,7 @@ void start(Work& work) noexcept {
     const std::uint32_t index = front[i];
     Node& node = work.tree[index];
     clear(node, kOfThisTick);
+    if (!work.pair_of(node).searches) clear(node, kLooked);
     node.report = kNone;
     renew(work, node);
     wait_if_near(work, index);
@@ -190,12 +239,14 @@ void wait_if_near(Work& work, std::uint32_t index) noexcept {
   const Node& node = work.tree[index];
   if (!work.is_near(node)) return;
   const PairState& pair = work.pair_of(node);
-  const bool later = work.only_culls(node);
+  const bool later = work.only_culls(node) && !pair.searches;
+  const bool ranked = later || pair.searches;
   const double certain = certain_now(pair, node);
-  work.wait({later ? rank(work, node, certain) : certain, certain * pair.unit_m, index, later});
+  work.wait({ranked ? rank(work, node, certain) : certain, certain * pair.unit_m, index, later});
 }
 
 double rank(const Work& work, const Node& node, double lower) noexcept {
+  if (work.pair_of(node).searches) return search_rank(work.pair_of(node), node, lower);
   const Order order = work.rules.order;
   if ((work.rules.exact && !work.may_end) || order == Order::nearest) return lower;
   if (order == Order::force && work.may_end)

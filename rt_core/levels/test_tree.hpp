@@ -20,6 +20,7 @@ inline constexpr std::uint8_t kRefineA = 4;  ///< this tick: near, and a is to b
 inline constexpr std::uint8_t kRefineB = 8;
 inline constexpr std::uint8_t kDived =
     16;  ///< this tick: has looked for a contact of original pieces
+inline constexpr std::uint8_t kLooked = 32;  ///< measured in this round of a search (start.hpp)
 inline constexpr std::uint8_t kOfThisTick = kMeasured | kStopped | kRefineA | kRefineB | kDived;
 
 /// Node::contact.

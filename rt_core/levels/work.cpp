@@ -75,6 +75,7 @@ void Work::add_contact(Node& node, const LeafContact& contact) noexcept {
   PairState& pair = pair_of(node);
   if (contact.distance >= pair.delta) return;
   if (contact.distance < pair.nearest) pair.nearest = contact.distance;
+  pair.searches = false;
   if (node.report != kNone) return report.replace(pair, node, contact);
   if (report.add(pair, node, contact)) return meter.expect_contacts(report.count());
   result.truncated_by_memory = true;
