@@ -128,10 +128,9 @@ TEST(EngineTruncation, contact_between_teeth_is_found_again_by_the_smallest_budg
                        {.delta_m = kDelta_m, .exact = exact, .cluster_radius_m = 1e-3});
       int none = 0;
       for (int i = 0; i < 200; ++i) {
-        const Pose poses[2] = {
-            {{3e-4 * std::sin(0.021 * i), 3e-4 * std::cos(0.033 * i), 0},
-             turn({0.02 * std::sin(0.05 * i), 0.016 * std::cos(0.037 * i), 0})},
-            {}};
+        const Pose poses[2] = {{{3e-4 * std::sin(0.021 * i), 3e-4 * std::cos(0.033 * i), 0},
+                                turn({0.02 * std::sin(0.05 * i), 0.016 * std::cos(0.037 * i), 0})},
+                               {}};
         const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
         none += r.contacts.empty() ? 1 : 0;
       }
