@@ -37,7 +37,7 @@ Soup read_obj(std::string_view bytes, const std::string& file);
 Soup read_off(std::string_view bytes,
               const std::string& file);  ///< with C, N, ST prefixes, ascii or binary
 Soup read_ply(std::string_view bytes,
-              const std::string& file);  ///< ascii, binary of either byte order
+              const std::string& file);  ///< ascii, binary of either byte order; faces or strips
 Soup read_stl_ascii(std::string_view bytes, const std::string& file);
 Soup read_stl_binary(std::string_view bytes, const std::string& file);
 

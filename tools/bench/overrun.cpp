@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far ticks with a budget of time run past their deadline.
 //
-//   bench_overrun ENGINE TICKS BUDGET_US...      ENGINE: levels (exact), simplified (levels,
-//                                                s0 = 0.025) or regions
+//   bench_overrun ENGINE TICKS BUDGET...         ENGINE: levels (exact), simplified (levels,
+//                                                s0 = 0.025) or regions; BUDGET: microseconds, or
+//                                                with a u behind it work units
 //
 // Interlocking jaws pressed together (tools/bench/scenes.cpp), contact tolerance 2 % of the
 // radius: slow and fast passes along one motion, forwards and backwards, and a leap to another
@@ -76,7 +77,21 @@ struct Row {
   std::uint64_t lost = 0;
 };
 
-Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, double budget_us) {
+/// `50` microseconds from now, or `50u` units.
+Budget budget_from(const char* text, std::uint64_t now_ns) {
+  char* unit = nullptr;
+  const double amount = std::strtod(text, &unit);
+  Budget budget;
+  if (*unit == 'u') {
+    budget.units = static_cast<std::uint64_t>(amount);
+  } else {
+    budget.clock_ns = wall_ns;
+    budget.deadline_ns = now_ns + static_cast<std::uint64_t>(1e3 * amount);
+  }
+  return budget;
+}
+
+Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, const char* allowed) {
   Row row;
   row.over_us.reserve(ticks);
   bench.forget();
@@ -85,9 +100,7 @@ Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, dou
     const Place& place = places[walk.next()];
     const std::uint64_t processor_start = processor_ns();
     const std::uint64_t start = wall_ns();
-    Budget budget;
-    budget.clock_ns = wall_ns;
-    budget.deadline_ns = start + static_cast<std::uint64_t>(1e3 * budget_us);
+    const Budget budget = budget_from(allowed, start);
     const TickResult r = bench.tick_at(place.pose, budget);
     const std::uint64_t end = wall_ns();
     const double busy = us_since(processor_start, processor_ns());
@@ -109,7 +122,7 @@ double at_share(std::vector<float>& sorted, double share) {
       sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))]);
 }
 
-int measure(std::string_view engine, std::uint64_t ticks, int count, char** budgets_us) {
+int measure(std::string_view engine, std::uint64_t ticks, int count, char** budgets) {
   const Body a(kJaws.a, 0.02, bake::ForEngine::both);
   const Body b(kJaws.b, 0.02, bake::ForEngine::both);
   const double radius = std::min(a.view.header->radius_m, b.view.header->radius_m);
@@ -118,14 +131,13 @@ int measure(std::string_view engine, std::uint64_t ticks, int count, char** budg
   const std::vector<Place> places = places_of(a, b, settings.delta_m);
   Bench bench(a, b, settings);
   std::puts(
-      "engine,budget_us,ticks,ended_by_deadline,over_p50_us,over_p99.9_us,over_p99.999_us,"
+      "engine,budget,ticks,ended_by_deadline,over_p50_us,over_p99.9_us,over_p99.999_us,"
       "over_max_us,over_max_undisturbed_us,unit_us,lost");
   for (int i = 0; i < count; ++i) {
-    const double budget_us = std::atof(budgets_us[i]);
-    Row row = run(bench, places, ticks, budget_us);
+    Row row = run(bench, places, ticks, budgets[i]);
     std::sort(row.over_us.begin(), row.over_us.end());
-    std::printf("%.*s,%g,%llu,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%.3f,%llu\n",
-                static_cast<int>(engine.size()), engine.data(), budget_us,
+    std::printf("%.*s,%s,%llu,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%.3f,%llu\n",
+                static_cast<int>(engine.size()), engine.data(), budgets[i],
                 static_cast<unsigned long long>(ticks), row.over_us.size(),
                 at_share(row.over_us, 0.5), at_share(row.over_us, 0.999),
                 at_share(row.over_us, 0.99999), at_share(row.over_us, 1), row.undisturbed_us,
@@ -141,7 +153,7 @@ int measure(std::string_view engine, std::uint64_t ticks, int count, char** budg
 int main(int argc, char** argv) {
   const std::string_view engine = argc > 1 ? argv[1] : "";
   if (argc < 4 || (engine != "levels" && engine != "simplified" && engine != "regions")) {
-    std::fputs("usage: bench_overrun levels|simplified|regions TICKS BUDGET_US...\n", stderr);
+    std::fputs("usage: bench_overrun levels|simplified|regions TICKS BUDGET[u]...\n", stderr);
     return 2;
   }
   return palpate::bench::measure(engine, std::strtoull(argv[2], nullptr, 10), argc - 3, argv + 3);
