@@ -155,10 +155,18 @@ bool any_searches(const Work& work) noexcept {
   return false;
 }
 
-/// Where a contact is kept none is looked for. Where every near node has been looked at the next
-/// round begins.
-void begin_searches(Work& work) noexcept {
+bool is_affordable(const Work& work, double most) noexcept {
+  return static_cast<double>(work.tree.front().size()) <= most || count_near(work) <= most;
+}
+
+/// Where a contact is kept none is looked for, nor where the budget does for all that is near.
+/// Where every near node has been looked at the next round begins.
+void begin_searches(Work& work, double affordable) noexcept {
   if (!any_searches(work)) return;
+  if (is_affordable(work, kFrontCut * affordable)) {
+    for (PairState& pair : work.memory.pairs) pair.searches = false;
+    return;
+  }
   bool round_over = true;
   for (const std::uint32_t index : work.tree.front()) {
     const Node& node = work.tree[index];
@@ -171,13 +179,8 @@ void begin_searches(Work& work) noexcept {
   for (const std::uint32_t index : work.tree.front()) clear(work.tree[index], kLooked);
 }
 
-bool is_affordable(const Work& work, double most) noexcept {
-  return static_cast<double>(work.tree.front().size()) <= most || count_near(work) <= most;
-}
-
 /// What is farthest goes first: it is felt least.
-void cut_back(Work& work) noexcept {
-  const double in_budget = work.meter.queries_affordable(work.memory.query_ns);
+void cut_back(Work& work, double in_budget) noexcept {
   const double affordable = in_budget > kLeastAffordable ? in_budget : kLeastAffordable;
   if (is_affordable(work, kFrontOverBudget * affordable)) return;
   if (any_searches(work) && work.tree.front().size() < kSearchedFront) return;
@@ -217,8 +220,9 @@ double search_rank(const PairState& pair, const Node& node, double lower) noexce
 
 void start(Work& work) noexcept {
   for (PairState& pair : work.memory.pairs) place(work, pair);
-  begin_searches(work);
-  cut_back(work);
+  const double affordable = work.meter.queries_affordable(work.memory.query_ns);
+  begin_searches(work, affordable);
+  cut_back(work, affordable);
   std::uint64_t kept = 0;
   const std::span<const std::uint32_t> front = work.tree.front();
   for (std::size_t i = 0; i < front.size(); ++i) {

@@ -15,12 +15,13 @@ namespace palpate::levels {
 /// the near nodes again, they give way to their parents, which take over the nearest contact below
 /// them, those with the farthest first and no more than have to: what has been found is felt, if
 /// coarser. But bodies that had no contact in the last tick, and keep none, are searched for a
-/// first one: the cut stays as deep as it is, up to 512 nodes, and the smallest pieces are measured
-/// and split first, each once before any comes again. Measured level by level such a front would be
-/// all that a small budget does for, in every tick anew. Nodes are near by their motion bounds and,
-/// where these have run out, by their spheres at the present pose; without Rules::motion_bounds by
-/// the spheres alone. What the query of the roots proves holds for every pair of pieces below them.
-/// O(front), and a query for each pair of bodies.
+/// first one where the budget is less than two units for each near node: the cut stays as deep as
+/// it is, up to 512 nodes, and the smallest pieces are measured and split first, each once before
+/// any comes again. Measuring such a front node by node would be all that the budget does for, in
+/// every tick anew. Nodes are near by their motion bounds and, where these have run out, by their
+/// spheres at the present pose; without Rules::motion_bounds by the spheres alone. What the query
+/// of the roots proves holds for every pair of pieces below them. O(front), and a query for each
+/// pair of bodies.
 void start(Work& work) noexcept;
 
 /// Puts a node on the queue if it is near.
