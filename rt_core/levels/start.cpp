@@ -18,13 +18,13 @@ constexpr double kSphereRounding = 1e-9;
 constexpr double kFrontOverBudget = 1.25;
 /// One that is larger is cut back to this: what is left of the budget refines where it is felt.
 constexpr double kFrontCut = 0.5;
-/// A budget of fewer units counts as this many. What is near about one contact has to fit into the
-/// front, measured in turns where a tick does not do for all of it: a smaller cut would split its
-/// way down to the contact anew in each tick, through the largest hulls, and not arrive.
-constexpr double kLeastAffordable = 32;
 /// It gives up what keeps no contact nearer than these shares of delta, one
 /// after the other, and then one level of all after the other.
 constexpr double kCutFrom[] = {1, 0.75, 0.5, 0.25, 0};
+/// For cuts a budget of fewer units counts as this many. What is near about one contact has to fit
+/// into the front, measured in turns where a tick does not do for all of it: a smaller cut would
+/// split its way down to the contact anew in each tick, through the largest hulls, and not arrive.
+constexpr double kLeastAffordable = 32;
 /// While a first contact is looked for, a front of fewer nodes is not cut back.
 constexpr std::size_t kSearchedFront = 512;
 /// The front's nodes lie anywhere in the pool: this many are on their way from memory.
@@ -243,18 +243,18 @@ void wait_if_near(Work& work, std::uint32_t index) noexcept {
   const Node& node = work.tree[index];
   if (!work.is_near(node)) return;
   const PairState& pair = work.pair_of(node);
-  const bool later = work.only_culls(node) && !pair.searches;
-  const bool ranked = later || pair.searches;
+  const bool ranked = work.only_culls(node) || pair.searches;
   const double certain = certain_now(pair, node);
-  work.wait({ranked ? rank(work, node, certain) : certain, certain * pair.unit_m, index, later});
+  work.wait({ranked ? rank(work, node, certain) : certain, certain * pair.unit_m, index,
+             ranked && !pair.searches});
 }
 
 double rank(const Work& work, const Node& node, double lower) noexcept {
-  if (work.pair_of(node).searches) return search_rank(work.pair_of(node), node, lower);
+  const PairState& pair = work.pair_of(node);
+  if (pair.searches) return search_rank(pair, node, lower);
   const Order order = work.rules.order;
   if ((work.rules.exact && !work.may_end) || order == Order::nearest) return lower;
-  if (order == Order::force && work.may_end)
-    return lower - known_distance(work.pair_of(node), node);
+  if (order == Order::force && work.may_end) return lower - known_distance(pair, node);
   // What is missing counts for no more than what the parent missed: refinement has an order.
   const float of_parent = node.parent == kNone ? node.s_star : work.tree[node.parent].s_star;
   const double s = static_cast<double>(node.s_star < of_parent ? node.s_star : of_parent);

@@ -33,7 +33,9 @@ void wait_if_near(Work& work, std::uint32_t index) noexcept;
 /// missing, not whether anything is felt there): the widest gap first, from `lower` up to the
 /// contact that the node keeps, as far as its points are apart by now and the original surfaces may
 /// be farther apart than those, or up to delta where it keeps none. Without a budget, and with
-/// Order::deviation, the largest s*; free levels, which have none, first.
+/// Order::deviation, the largest s*; free levels, which have none, first. While a first contact is
+/// searched for: what has been measured, then by size (in powers of two) and `lower`, and what this
+/// round has looked at last.
 /// @param lower  what is proved of the distance
 double rank(const Work& work, const Node& node, double lower) noexcept;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far ticks with a budget of time run past their deadline.
+// How far ticks with a budget of time run past their deadline, and how many lose their contacts.
 //
 //   bench_overrun ENGINE TICKS BUDGET...         ENGINE: levels (exact), simplified (levels,
 //                                                s0 = 0.025) or regions; BUDGET: microseconds, or
@@ -77,21 +77,22 @@ struct Row {
   std::uint64_t lost = 0;
 };
 
-/// `50` microseconds from now, or `50u` units.
-Budget budget_from(const char* text, std::uint64_t now_ns) {
-  char* unit = nullptr;
-  const double amount = std::strtod(text, &unit);
-  Budget budget;
-  if (*unit == 'u') {
-    budget.units = static_cast<std::uint64_t>(amount);
-  } else {
-    budget.clock_ns = wall_ns;
-    budget.deadline_ns = now_ns + static_cast<std::uint64_t>(1e3 * amount);
+/// Of a tick: `50` on the command line is microseconds, `50u` units.
+struct Allowed {
+  explicit Allowed(const char* text) {
+    char* unit = nullptr;
+    amount = std::strtod(text, &unit);
+    in_units = *unit == 'u';
   }
-  return budget;
-}
+  [[nodiscard]] Budget from(std::uint64_t now_ns) const {
+    if (in_units) return {.units = static_cast<std::uint64_t>(amount)};
+    return {.clock_ns = wall_ns, .deadline_ns = now_ns + static_cast<std::uint64_t>(1e3 * amount)};
+  }
+  double amount = 0;
+  bool in_units = false;
+};
 
-Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, const char* allowed) {
+Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, Allowed allowed) {
   Row row;
   row.over_us.reserve(ticks);
   bench.forget();
@@ -100,7 +101,7 @@ Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, con
     const Place& place = places[walk.next()];
     const std::uint64_t processor_start = processor_ns();
     const std::uint64_t start = wall_ns();
-    const Budget budget = budget_from(allowed, start);
+    const Budget budget = allowed.from(start);
     const TickResult r = bench.tick_at(place.pose, budget);
     const std::uint64_t end = wall_ns();
     const double busy = us_since(processor_start, processor_ns());
@@ -134,7 +135,7 @@ int measure(std::string_view engine, std::uint64_t ticks, int count, char** budg
       "engine,budget,ticks,ended_by_deadline,over_p50_us,over_p99.9_us,over_p99.999_us,"
       "over_max_us,over_max_undisturbed_us,unit_us,lost");
   for (int i = 0; i < count; ++i) {
-    Row row = run(bench, places, ticks, budgets[i]);
+    Row row = run(bench, places, ticks, Allowed(budgets[i]));
     std::sort(row.over_us.begin(), row.over_us.end());
     std::printf("%.*s,%s,%llu,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%.3f,%llu\n",
                 static_cast<int>(engine.size()), engine.data(), budgets[i],
