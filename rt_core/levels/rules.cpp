@@ -3,23 +3,14 @@
 
 #include <limits>
 
+#include "rt_core/levels/support_area.hpp"
+
 namespace palpate::levels {
 namespace {
 
 using image::Piece;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// D at a witness, relative to its body's radius squared.
-double support_area(const ImageView& image, const Piece& piece, const std::uint32_t (&vertices)[3],
-                    const double (&weights)[3], std::uint32_t count) noexcept {
-  const image::Vertex* first = image.vertices.data() + piece.first_vertex;
-  double area = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    area += weights[i] * static_cast<double>(first[vertices[i]].support_area);
-  }
-  return area;
-}
 
 double phi(const Piece& piece) noexcept {
   const double r = static_cast<double>(piece.resolution);
@@ -45,10 +36,12 @@ Detail detail(const PairState& pair, const Piece& a, const Piece& b, const conve
     out.s_star = out.excess = out.refine_a || out.refine_b ? kInfinity : 0;
     return out;
   }
-  const double area_a =
-      support_area(*pair.image_a, a, query.vertices_a, query.weights_a, query.count_a);
-  const double area_b =
-      support_area(*pair.image_b, b, query.vertices_b, query.weights_b, query.count_b);
+  const bool nothing_missing = a.surface_deviation == 0 && b.surface_deviation == 0;
+  if (nothing_missing) return out;
+  const double area_a = support_area(hull_of(*pair.image_a, a, pair.scale_a),
+                                     {query.vertices_a, query.weights_a, query.count_a});
+  const double area_b = support_area(hull_of(*pair.image_b, b, pair.scale_b),
+                                     {query.vertices_b, query.weights_b, query.count_b});
   const double b_to_a = pair.scale_b / pair.scale_a;
   const double star_a = phi(a) / larger(area_a, area_b * b_to_a * b_to_a);
   const double star_b = phi(b) / larger(area_b, area_a / (b_to_a * b_to_a));

@@ -50,12 +50,12 @@ inline bool is_free(const image::Piece& piece) noexcept { return piece.triangles
 
 /// The rules applied to two pieces with metrics.
 ///
-/// phi = s / r^2 (eq. 6), s* = phi / max(D_a, D_b) (eq. 7), D interpolated at the witnesses of
-/// `query`; refined where s* > s0 or s > kappa * delta. Departures: s* is taken for each body by
-/// itself, relative to its own radius, and only the body whose detail can be felt is refined (the
-/// paper takes the larger phi and then splits whichever piece has coarser children): so levels that
-/// a scene never asks for can be left out of an image. Hulls that overlap are refined in any case:
-/// simplified hulls may overlap where the original surfaces do not.
+/// phi = s / r^2 (eq. 6), s* = phi / max(D_a, D_b) (eq. 7), D at the witnesses of `query`
+/// (support_area.hpp); refined where s* > s0 or s > kappa * delta. Departures: s* is taken for each
+/// body by itself, relative to its own radius, and only the body whose detail can be felt is
+/// refined (the paper takes the larger phi and then splits whichever piece has coarser children):
+/// so levels that a scene never asks for can be left out of an image. Hulls that overlap are
+/// refined in any case: simplified hulls may overlap where the original surfaces do not.
 /// @param query  of the pieces' own hulls
 Detail detail(const PairState& pair, const image::Piece& a, const image::Piece& b,
               const convex::Distance& query, const Rules& rules) noexcept;
