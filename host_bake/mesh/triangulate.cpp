@@ -58,7 +58,8 @@ double agreement(const Point& a, const Point& b, const Point& c, const Point& d)
 
 void split_quad(const std::vector<Point>& points, Polygon q, std::vector<Face>& faces) {
   const Point &a = points[q[0]], &b = points[q[1]], &c = points[q[2]], &d = points[q[3]];
-  if (agreement(a, b, c, d) >= agreement(b, c, d, a)) {
+  const double from_first = agreement(a, b, c, d);
+  if (from_first > 0 || from_first >= agreement(b, c, d, a)) {
     faces.insert(faces.end(), {Face{q[0], q[1], q[2]}, Face{q[0], q[2], q[3]}});
   } else {
     faces.insert(faces.end(), {Face{q[1], q[2], q[3]}, Face{q[1], q[3], q[0]}});

@@ -51,6 +51,18 @@ TEST(Triangulate, Concave_quad_is_cut_inside) {
   }
 }
 
+TEST(Triangulate, Convex_quad_is_cut_from_its_first_corner_be_it_flat_or_not) {
+  for (const double height : {0.0, 0.3, -0.3}) {
+    const std::vector<Point> quad = {{0, 0, height}, {1, 0, 0}, {1, 1, height}, {0, 1, 0}};
+    for (std::uint32_t first = 0; first < 4; ++first) {
+      const std::uint32_t q[4] = {first, (first + 1) % 4, (first + 2) % 4, (first + 3) % 4};
+      std::vector<Face> faces;
+      triangulate(quad, q, faces);
+      EXPECT_EQ(faces, (std::vector<Face>{{q[0], q[1], q[2]}, {q[0], q[2], q[3]}}));
+    }
+  }
+}
+
 TEST(Triangulate, Random_stars_are_covered) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> radius(0.05, 1);
