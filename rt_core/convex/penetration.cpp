@@ -169,24 +169,29 @@ void keep_deepest(const HullPair& pair, const Polytope& polytope, Best& best) no
   }
 }
 
-/// The narrowest extent apart from the best one, while it is of interest.
+/// The lowest face of a - b apart from the best one, while it is of interest. It may still lie
+/// below a face of the polytope that is less apart. Directions between faces of a - b may be
+/// shorter ways out, but which of them a search comes by is chance.
 Best expand_apart(const HullPair& pair, Polytope& polytope, const Best& best) noexcept {
-  constexpr double kApart = 0.5;
+  constexpr double kApart = 0.5;  // cosines
+  constexpr double kLook = 0.7;
   const double most = kOtherUpTo * best.extent;
   Best other;
   for (std::uint32_t i = 0; i < kMostOther; ++i) {
-    const std::uint32_t lowest = lowest_face_apart(polytope, best.outward, kApart);
+    const std::uint32_t lowest = lowest_face_apart(polytope, best.outward, kLook);
     if (lowest == kMaxPolytopeFaces) break;
-    const PolytopeFace& face = polytope.faces[lowest];
-    if (face.offset >= most || face.offset >= other.extent) break;
+    PolytopeFace& face = polytope.faces[lowest];
+    if (face.offset >= most) break;
     const DifferencePoint w = support(pair, face.normal, polytope.vertices[face.vertices[0]]);
     const double e = dot(face.normal, w.point);
-    if (e < other.extent) {
+    const bool settled = e - face.offset <= kDistanceGap * extent(pair);
+    if (settled && dot(face.normal, best.outward) <= kApart) {
       other.extent = e;
       other.outward = face.normal;
+      break;
     }
-    if (e - face.offset <= kDistanceGap * extent(pair)) break;
-    if (!add_vertex(polytope, lowest, w, kCoplanar * extent(pair))) break;
+    face.passed_over = settled;
+    if (!settled && !add_vertex(polytope, lowest, w, kCoplanar * extent(pair))) break;
   }
   return other;
 }

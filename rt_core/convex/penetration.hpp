@@ -23,9 +23,10 @@ struct Penetration {
   Vec3d point_a{};         ///< deepest point of a inside b
   Vec3d point_b{};         ///< point_b - point_a = depth * normal
   bool exact = true;       ///< false: a cap was met; depth and normal still separate the hulls
-  /// The next best way out, 60 degrees or more away from the normal, and how much it counts: 0.5
-  /// where it is as short, 0 where it is longer by half of the depth, there is none, the search
-  /// met a cap, or it was not asked for (Ways).
+  /// The next best way out, normal to a face of a - b that is 60 degrees or more away from the
+  /// first, and how much it counts: 0.5 where it is as short, 0 where it is longer by half of the
+  /// depth, there is none, the search met a cap, or it was not asked for (Ways). Seldom a search
+  /// that starts elsewhere finds another face.
   Vec3d other_normal{};
   double other_share = 0;
 };
