@@ -9,13 +9,6 @@
 namespace palpate::test {
 namespace {
 
-double to_region(const PlacedTriangles& a, const std::vector<std::size_t>& region, Vec3d p) {
-  double best = std::numeric_limits<double>::infinity();
-  for (const std::size_t t : region)
-    best = std::min(best, CGAL::squared_distance(a.triangles[t], Kernel::Point_3(p.x, p.y, p.z)));
-  return std::sqrt(best);
-}
-
 void expect_exact(const TickResult& result, const bake::Mesh& mesh_a, const PlacedTriangles& a,
                   const PlacedTriangles& b, double delta, double unit) {
   const double truth = distance_of(a, b);
@@ -34,7 +27,7 @@ void expect_exact(const TickResult& result, const bake::Mesh& mesh_a, const Plac
   for (const auto& region : near_regions(mesh_a, a, b, 0.98 * delta)) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const Contact& c : result.contacts)
-      nearest = std::min(nearest, to_region(a, region, c.point_a_m));
+      nearest = std::min(nearest, distance_to(a, region, c.point_a_m));
     EXPECT_LE(nearest, delta) << "a region of " << region.size() << " triangles has no contact";
   }
 }

@@ -34,13 +34,6 @@ double least_of(const PlacedTriangles& a, const std::vector<std::size_t>& region
   return least;
 }
 
-double to_region(const PlacedTriangles& a, const std::vector<std::size_t>& region, Vec3d p) {
-  double best = std::numeric_limits<double>::infinity();
-  for (const std::size_t t : region)
-    best = std::min(best, CGAL::squared_distance(a.triangles[t], Kernel::Point_3(p.x, p.y, p.z)));
-  return std::sqrt(best);
-}
-
 /// Each region nearer than delta has a contact, or is no nearer than the certificate leaves open.
 void expect_no_region_lost(const TickResult& r, const PlacedTriangles& a,
                            const PlacedTriangles& b) {
@@ -48,7 +41,8 @@ void expect_no_region_lost(const TickResult& r, const PlacedTriangles& a,
   const double open_from = nearest - r.certificate.error_bound_m - 2e-6;
   for (const auto& region : near_regions(ring_about_ball().a.mesh, a, b, 0.98 * kDelta)) {
     double apart = std::numeric_limits<double>::infinity();
-    for (const Contact& c : r.contacts) apart = std::min(apart, to_region(a, region, c.point_a_m));
+    for (const Contact& c : r.contacts)
+      apart = std::min(apart, distance_to(a, region, c.point_a_m));
     if (apart > kDelta) {
       EXPECT_GE(least_of(a, region, b), open_from)
           << "a region of " << region.size() << " triangles";

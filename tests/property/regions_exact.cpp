@@ -185,8 +185,7 @@ TEST(RegionSearch, pairs_that_are_not_kept_are_beyond_rest) {
         if (std::any_of(near.pairs, end, [&](const auto& w) { return w.same_pair(pair); })) {
           continue;
         }
-        const double d = std::sqrt(CGAL::squared_distance(moved.triangles[triangles[a].source],
-                                                          fixed.triangles[others[b].source]));
+        const double d = distance_between(moved, triangles[a].source, fixed, others[b].source);
         ASSERT_GE(d / at.pair.unit_m, double(found.rest));
       }
     }

@@ -3,12 +3,11 @@ if(PALPATE_HOST)
   palpate_test(bake_test
     SOURCES
       unit/bake_hierarchy.cpp unit/bake_metrics.cpp unit/bake_pack.cpp unit/bake_verify.cpp
-      golden/bake_image.cpp unit/mesh_support.cpp
-    LIBS palpate_bake)
+      golden/bake_image.cpp
+    LIBS bodies_support)
 
-  set(awkward_support property/bake_awkward.cpp unit/simplify_random.cpp unit/decompose_shapes.cpp)
-  palpate_test(bake_awkward SOURCES ${awkward_support} LIBS palpate_bake LABEL property)
-  palpate_test(bake_awkward_long SOURCES ${awkward_support} LIBS palpate_bake LABEL long)
+  palpate_test(bake_awkward SOURCES property/bake_awkward.cpp LIBS bodies_support LABEL property)
+  palpate_test(bake_awkward_long SOURCES property/bake_awkward.cpp LIBS bodies_support LABEL long)
   target_compile_definitions(bake_awkward_long PRIVATE PALPATE_LONG)
 
   find_package(nlohmann_json REQUIRED)

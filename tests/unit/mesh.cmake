@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 if(PALPATE_HOST)
   foreach(part read triangulate check repair crossings hostile)
-    palpate_test(mesh_${part}_test SOURCES unit/mesh_${part}.cpp unit/mesh_support.cpp LIBS palpate_bake)
+    palpate_test(mesh_${part}_test SOURCES unit/mesh_${part}.cpp LIBS bodies_support)
   endforeach()
   palpate_test(mesh_commands_test SOURCES unit/mesh_commands.cpp LIBS palpate_bake)
   target_compile_definitions(mesh_commands_test PRIVATE PALPATE_EXECUTABLE="$<TARGET_FILE:palpate>")

@@ -3,10 +3,9 @@ if(PALPATE_HOST)
   find_package(CGAL REQUIRED)
   find_package(TBB REQUIRED)
   palpate_test(metrics_deviation_test
-    SOURCES unit/metrics_deviation.cpp unit/metrics_nearest.cpp unit/mesh_support.cpp
-      unit/decompose_shapes.cpp
-    LIBS palpate_bake CGAL::CGAL TBB::tbb)
+    SOURCES unit/metrics_deviation.cpp unit/metrics_nearest.cpp
+    LIBS bodies_support CGAL::CGAL TBB::tbb)
   palpate_test(metrics_support_area_test
-    SOURCES unit/metrics_support_area.cpp unit/mesh_support.cpp unit/decompose_shapes.cpp
-    LIBS palpate_bake TBB::tbb)
+    SOURCES unit/metrics_support_area.cpp
+    LIBS bodies_support TBB::tbb)
 endif()
