@@ -74,7 +74,8 @@ Soup read_stl_binary(std::string_view bytes, const std::string& file) {
   const auto facets = in.read<std::uint32_t>();
   if (facets * kFacetBytes != in.left()) {
     throw InputRefused("the header counts " + std::to_string(facets) + " triangles but " +
-                           std::to_string(in.left() / kFacetBytes) + " follow",
+                           std::to_string(in.left()) + " bytes follow, " +
+                           std::to_string(kFacetBytes) + " a triangle",
                        file, "copy or export the mesh again");
   }
   Soup soup;

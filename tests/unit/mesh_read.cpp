@@ -267,7 +267,7 @@ TEST(Read, Bad_files_are_refused_with_place_and_mend) {
       {replaced(strips_ply("6 0 1 2 3 0 1\n"), "list int int", "list int float"), ".ply",
        "vertex_indices"},
       {"plain text\n", ".ply", "not a PLY"},
-      {to_stl_binary(cube()) + "x", ".stl", "header counts 12"},
+      {to_stl_binary(cube()) + "x", ".stl", "counts 12 triangles but 601 bytes"},
       {replaced(to_stl_ascii(cube()), "endloop", "vertex 0 0 0\nendloop"), ".stl",
        "'endloop' missing"},
       {replaced(to_stl_ascii(cube()), "vertex 1", "vertex one"), ".stl", "'one' is not a number"},
