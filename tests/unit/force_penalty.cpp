@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rt_core/force/directions.hpp"
+#include "tests/support/effort.hpp"
 
 namespace palpate::force {
 namespace {
@@ -299,7 +300,7 @@ TEST(Penalty, contact_at_delta_brings_nothing) {
 /// change of the wrench: no jumps anywhere.
 TEST(Penalty, changes_no_faster_than_its_contacts) {
   Random random{std::mt19937(6)};
-  for (int round = 0; round < 6; ++round) {
+  for (int round = 0; round < test::effort(6, 2); ++round) {
     const std::vector<Contact> from = random.contacts(30, 0.03);
     const std::vector<Contact> to = random.contacts(30, 0.03);
     const auto largest_change = [&](int steps) {

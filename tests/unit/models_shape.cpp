@@ -11,6 +11,7 @@
 
 #include "host_bake/base/error.hpp"
 #include "host_bake/models/models.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/unit/models_geometry.hpp"
 
 namespace palpate {
@@ -36,7 +37,8 @@ void expect_sound(const Mesh& mesh, const ModelInfo& model, std::size_t wanted) 
 
 TEST_P(Model, any_count_gives_closed_outward_manifold) {
   const ModelInfo& model = GetParam();
-  for (std::size_t wanted = model.least_triangles; wanted < 12000; wanted = wanted * 17 / 13) {
+  constexpr std::size_t kStep = test::effort<std::size_t>(17, 39);
+  for (std::size_t wanted = model.least_triangles; wanted < 12000; wanted = wanted * kStep / 13) {
     expect_sound(make_model(model.name, wanted), model, wanted);
   }
 }
