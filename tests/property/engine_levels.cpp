@@ -23,14 +23,6 @@ Pose slide(int i) {
           turn({0.01 * i, 0.004 * i, 0})};
 }
 
-std::vector<double> true_distances(int ticks) {
-  const PlacedTriangles fixed(bodies().b.mesh, {});
-  std::vector<double> truth;
-  for (int i = 0; i < ticks; ++i)
-    truth.push_back(distance_of(PlacedTriangles(bodies().a.mesh, slide(i)), fixed));
-  return truth;
-}
-
 Settings with_s0(double s0, bool interpolate = true) {
   return {.delta_m = kDelta, .s0 = s0, .interpolate = interpolate, .cluster_radius_m = 0.1};
 }
@@ -41,7 +33,7 @@ TEST(EngineLevels, bodies_have_several_simplified_levels) {
 }
 
 TEST(EngineLevels, certificate_holds_whatever_is_left_out) {
-  const std::vector<double> truth = true_distances(30);
+  const std::vector<double> truth = distances_along(bodies().a.mesh, bodies().b.mesh, slide, 30);
   for (const double s0 : {0.0, 1e-3, 0.01, 0.05, 0.5, 1e3}) {
     for (const bool interpolate : {false, true}) {
       for (const std::uint64_t units : {3u, 30u, 300u, 1000000u}) {

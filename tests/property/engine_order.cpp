@@ -113,10 +113,8 @@ TEST(EngineOrder, without_a_budget_the_order_changes_nothing) {
 }
 
 TEST(EngineOrder, certificate_is_true_with_any_order) {
-  const PlacedTriangles fixed(bodies().b.mesh, {});
-  std::vector<double> truth;
-  for (int i = 0; i < kTicks; ++i)
-    truth.push_back(distance_of(PlacedTriangles(bodies().a.mesh, slide(i)), fixed));
+  const std::vector<double> truth =
+      distances_along(bodies().a.mesh, bodies().b.mesh, slide, kTicks);
   for (const Order order : {Order::deviation, Order::nearest, Order::ratio, Order::force}) {
     for (const double s0 : {0.0, 0.02}) {
       for (const std::uint64_t units : {8u, 64u, 512u, 4096u}) {

@@ -94,11 +94,8 @@ TEST(EngineSettings, root_short_cut_makes_parted_hulls_cost_one_query) {
 
 // What stops on the surface has all of the nearest pair, and less of what is farther.
 TEST(EngineSettings, stop_on_surface_keeps_the_certificate_and_the_nearest_contact) {
-  const PlacedTriangles fixed(bodies().b.mesh, {});
-  std::vector<double> truths;
-  for (int i = 0; i < kTicks; ++i) {
-    truths.push_back(distance_of(PlacedTriangles(bodies().a.mesh, motion(i)), fixed));
-  }
+  const std::vector<double> truths =
+      distances_along(bodies().a.mesh, bodies().b.mesh, motion, kTicks);
   for (const double s0 : {0.0, 0.02}) {
     for (const std::uint64_t units : {20u, 100u, 1000000u}) {
       const Settings settings{

@@ -41,13 +41,8 @@ BakedScene scene_with(const Settings& settings, const Limits& limits = {}) {
 }
 
 const std::vector<double>& truth() {
-  static const std::vector<double> all = [] {
-    const PlacedTriangles fixed(bodies().b.mesh, {});
-    std::vector<double> out;
-    for (int i = 0; i < kTicks; ++i)
-      out.push_back(distance_of(PlacedTriangles(bodies().a.mesh, motion(i)), fixed));
-    return out;
-  }();
+  static const std::vector<double> all =
+      distances_along(bodies().a.mesh, bodies().b.mesh, motion, kTicks);
   return all;
 }
 

@@ -56,6 +56,14 @@ double distance_of(const PlacedTriangles& a, const PlacedTriangles& b) {
   return least;
 }
 
+std::vector<double> distances_along(const bake::Mesh& a, const bake::Mesh& b, Pose (&motion)(int),
+                                    int ticks) {
+  const PlacedTriangles fixed(b, {});
+  std::vector<double> out;
+  for (int i = 0; i < ticks; ++i) out.push_back(distance_of(PlacedTriangles(a, motion(i)), fixed));
+  return out;
+}
+
 double distance_to(const PlacedTriangles& a, std::span<const std::size_t> triangles, Vec3d point) {
   double least2 = kInfinity;
   for (const std::size_t t : triangles)

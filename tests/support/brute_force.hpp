@@ -31,6 +31,10 @@ double distance_from(const PlacedTriangles& a, std::size_t i, const PlacedTriang
 
 double distance_of(const PlacedTriangles& a, const PlacedTriangles& b);
 
+/// Distances of a, moved, from b, not moved, at ticks 0 to `ticks` - 1 of a motion.
+std::vector<double> distances_along(const bake::Mesh& a, const bake::Mesh& b, Pose (&motion)(int),
+                                    int ticks);
+
 /// Distance of a point from the nearest of some triangles.
 double distance_to(const PlacedTriangles& a, std::span<const std::size_t> triangles, Vec3d point);
 
