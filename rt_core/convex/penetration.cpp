@@ -169,29 +169,40 @@ void keep_deepest(const HullPair& pair, const Polytope& polytope, Best& best) no
   }
 }
 
-/// The lowest face of a - b apart from the best one, while it is of interest. It may still lie
-/// below a face of the polytope that is less apart. Directions between faces of a - b may be
-/// shorter ways out, but which of them a search comes by is chance.
+/// How far a face itself, not its plane, is from the origin.
+double way_through(const Polytope& polytope, const PolytopeFace& face) noexcept {
+  const Vec3d corners[3] = {polytope.vertices[face.vertices[0]].point,
+                            polytope.vertices[face.vertices[1]].point,
+                            polytope.vertices[face.vertices[2]].point};
+  return sqrt_of(nearest_on_triangle(corners, 0, 1, 2).squared);
+}
+
+/// The face of a - b apart from the best one that the origin is nearest to, while it is of
+/// interest; its extent is the way through it. Whatever lies before that face is lower than it is
+/// far, so that a search that goes on until nothing is lower has met it, wherever it began.
+/// Directions between faces may be shorter ways out, but which of them a search comes by is chance.
 Best expand_apart(const HullPair& pair, Polytope& polytope, const Best& best) noexcept {
   constexpr double kApart = 0.5;  // cosines
-  constexpr double kLook = 0.7;
-  const double most = kOtherUpTo * best.extent;
+  constexpr double kLook = 0.8;
   Best other;
+  other.extent = kOtherUpTo * best.extent;
   for (std::uint32_t i = 0; i < kMostOther; ++i) {
     const std::uint32_t lowest = lowest_face_apart(polytope, best.outward, kLook);
     if (lowest == kMaxPolytopeFaces) break;
     PolytopeFace& face = polytope.faces[lowest];
-    if (face.offset >= most) break;
+    if (face.offset >= other.extent) break;
     const DifferencePoint w = support(pair, face.normal, polytope.vertices[face.vertices[0]]);
-    const double e = dot(face.normal, w.point);
-    const bool settled = e - face.offset <= kDistanceGap * extent(pair);
-    if (settled && dot(face.normal, best.outward) <= kApart) {
-      other.extent = e;
-      other.outward = face.normal;
-      break;
+    if (dot(face.normal, w.point) - face.offset > kDistanceGap * extent(pair)) {
+      if (!add_vertex(polytope, lowest, w, kCoplanar * extent(pair))) break;
+      continue;
     }
-    face.passed_over = settled;
-    if (!settled && !add_vertex(polytope, lowest, w, kCoplanar * extent(pair))) break;
+    face.passed_over = true;
+    if (dot(face.normal, best.outward) > kApart) continue;
+    const double way = way_through(polytope, face);
+    if (way < other.extent) {
+      other.extent = way;
+      other.outward = face.normal;
+    }
   }
   return other;
 }
