@@ -25,6 +25,12 @@ class MinQueue {
 
   void clear() noexcept { size_ = 0; }
 
+  /// Takes over all of the storage as it lies. O(n)
+  void fill() noexcept {
+    size_ = storage_.size();
+    for (std::size_t i = size_ / 2; i-- > 0;) sink(i, storage_[i]);
+  }
+
   void push(const T& item) noexcept {  ///< O(log n)
     PALPATE_ASSERT(size_ < storage_.size());
     std::size_t hole = size_++;
@@ -40,7 +46,11 @@ class MinQueue {
   void pop() noexcept {  ///< O(log n)
     PALPATE_ASSERT(size_ > 0);
     const T item = storage_[--size_];
-    std::size_t hole = 0;
+    sink(0, item);
+  }
+
+ private:
+  void sink(std::size_t hole, const T item) noexcept {
     while (true) {
       std::size_t child = 2 * hole + 1;
       if (child >= size_) break;
@@ -52,7 +62,6 @@ class MinQueue {
     storage_[hole] = item;
   }
 
- private:
   std::span<T> storage_;
   std::size_t size_ = 0;
   Less less_;

@@ -23,10 +23,11 @@ struct Penetration {
   Vec3d point_a{};         ///< deepest point of a inside b
   Vec3d point_b{};         ///< point_b - point_a = depth * normal
   bool exact = true;       ///< false: a cap was met; depth and normal still separate the hulls
-  /// The next best way out, normal to the nearest face of a - b that is 60 degrees or more away from
-  /// the first, and how much it counts: 0.5 where that face is as near as the first, 0 where it is
-  /// farther by half of the depth, there is none, the search met a cap, or it was not asked for
-  /// (Ways). In one overlap of a thousand a search that starts elsewhere finds another face.
+  /// The next best way out, normal to the nearest face of a - b that is 60 degrees or more away
+  /// from the first, and how much it counts: 0.5 where that face is as near as the first, 0 where
+  /// it is farther by half of the depth, there is none, none was seen before a cap, or it was not
+  /// asked for (Ways). In one overlap of a thousand a search that starts elsewhere finds another
+  /// face.
   Vec3d other_normal{};
   double other_share = 0;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/force/depths.hpp"
 
+#include <array>
+
 #include "rt_core/base/queue.hpp"
 #include "rt_core/force/directions.hpp"
 
@@ -21,7 +23,7 @@ struct Deeper {
 
 double magnitude(double v) noexcept { return v < 0 ? -v : v; }
 
-int side_of(Vec3d n) noexcept {
+std::uint32_t side_of(Vec3d n) noexcept {
   const double x = magnitude(n.x), y = magnitude(n.y), z = magnitude(n.z);
   if (x >= y && x >= z) return n.x < 0 ? 1 : 0;
   if (y >= z) return n.y < 0 ? 3 : 2;
@@ -29,13 +31,13 @@ int side_of(Vec3d n) noexcept {
 }
 
 /// Cosine between a direction and the axis of a side.
-double cosine_to(int side, Vec3d n) noexcept {
+double cosine_to(std::uint32_t side, Vec3d n) noexcept {
   const double along = side < 2 ? n.x : side < 4 ? n.y : n.z;
   return (side & 1) != 0 ? -along : along;
 }
 
 /// Largest kinship of a direction with any direction of a side.
-double most_kinship(int side, Vec3d n) noexcept {
+double most_kinship(std::uint32_t side, Vec3d n) noexcept {
   const double c = cosine_to(side, n);
   if (c >= kCornerCosine) return 1;
   const double sine2 = 1 - c * c;
@@ -45,49 +47,86 @@ double most_kinship(int side, Vec3d n) noexcept {
   return nearest < 1 ? kRoundingUp * kinship(nearest) : 1;
 }
 
+/// Lays the deepest of one side side by side; of the contacts, only `ranked` are of that side.
+std::uint32_t keep_deepest(std::span<const Felt> felt, std::span<Ranked> ranked,
+                           DeepLanes* lanes) noexcept {
+  MinQueue<Ranked, Deeper> queue(ranked);
+  queue.fill();
+  std::uint32_t count = 0;
+  Vec3d last{};
+  for (; !queue.empty() && count < DeepSides::kMostLooks; queue.pop()) {
+    const Felt& next = felt[queue.top().felt];
+    // It has nothing to say that the deeper one has not, and would use up looks.
+    if (count > 0 && dot(last, next.direction) >= kSameCosine) continue;
+    last = next.direction;
+    DeepLanes& to = lanes[count / DeepLanes::kLanes];
+    const std::uint32_t lane = count % DeepLanes::kLanes;
+    if (lane == 0) to = {};
+    to.x[lane] = last.x;
+    to.y[lane] = last.y;
+    to.z[lane] = last.z;
+    to.depth_m[lane] = next.depth_m;
+    ++count;
+  }
+  return count;
+}
+
+/// What every 64-bit target computes at once, in the same bits as one by one.
+using Two = double __attribute__((vector_size(2 * sizeof(double))));
+
+Two load(const double* from) noexcept {
+  Two v;
+  __builtin_memcpy(&v, from, sizeof v);
+  return v;
+}
+
+/// Largest depth times kinship of a direction with those side by side, and `most_m`.
+double most_of(const DeepLanes& lanes, Vec3d n, double most_m) noexcept {
+  Two most{};
+  for (std::uint32_t i = 0; i < DeepLanes::kLanes; i += 2) {
+    const Two cosine = n.x * load(lanes.x + i) + n.y * load(lanes.y + i) + n.z * load(lanes.z + i);
+    const Two here_m = kinship(cosine > 0.0 ? cosine : Two{}) * load(lanes.depth_m + i);
+    most = here_m > most ? here_m : most;
+  }
+  most_m = most[0] > most_m ? most[0] : most_m;
+  return most[1] > most_m ? most[1] : most_m;
+}
+
 }  // namespace
 
-Depths::Depths(std::span<Felt> felt, std::span<Ranked> ranking) noexcept : felt_(felt) {
-  MinQueue<Ranked, Deeper> queue(ranking);
-  for (std::uint32_t i = 0; i < felt.size(); ++i) queue.push({felt[i].depth_m, i});
-  deepest_.fill(kNone);
-  std::array<std::uint32_t, kSides> last{};
-  for (; !queue.empty(); queue.pop()) {
-    const std::uint32_t index = queue.top().felt;
-    const auto side = static_cast<std::size_t>(side_of(felt[index].direction));
-    felt[index].next = kNone;
-    if (deepest_[side] == kNone) {
-      deepest_[side] = index;
-    } else {
-      Felt& deeper = felt[last[side]];
-      // It has nothing to say that the deeper one has not, and would use up looks.
-      if (dot(deeper.direction, felt[index].direction) >= kSameCosine) continue;
-      deeper.next = index;
-    }
-    last[side] = index;
+Depths::Depths(std::span<const Felt> felt, std::span<Ranked> ranking, DeepSides& sides) noexcept
+    : sides_(sides) {
+  std::array<std::uint32_t, DeepSides::kSides + 1> end{};  // where the side before ends
+  for (const Felt& f : felt) ++end[side_of(f.direction) + 1];
+  for (std::uint32_t side = 0; side < DeepSides::kSides; ++side) end[side + 1] += end[side];
+  for (std::uint32_t i = 0; i < felt.size(); ++i) {
+    ranking[end[side_of(felt[i].direction)]++] = {felt[i].depth_m, i};
+  }
+  std::uint32_t first = 0;
+  for (std::uint32_t side = 0; side < DeepSides::kSides; ++side) {
+    const std::span<Ranked> ranked = ranking.subspan(first, end[side] - first);
+    sides.count[side] = keep_deepest(felt, ranked, sides.lanes[side]);
+    first = end[side];
   }
 }
 
 double Depths::around(const Felt& f) const noexcept {
-  const int own = side_of(f.direction);
+  const std::uint32_t own = side_of(f.direction);
   double most_m = around(f, own, f.depth_m);
-  for (int side = 0; side < kSides; ++side) {
+  for (std::uint32_t side = 0; side < DeepSides::kSides; ++side) {
     if (side != own) most_m = around(f, side, most_m);
   }
   return most_m;
 }
 
-double Depths::around(const Felt& f, int side, double most_m) const noexcept {
-  std::uint32_t at = deepest_[static_cast<std::size_t>(side)];
-  if (at == kNone || felt_[at].depth_m <= most_m) return most_m;
+double Depths::around(const Felt& f, std::uint32_t side, double most_m) const noexcept {
+  const DeepLanes* lanes = sides_.lanes[side];
+  const std::uint32_t count = sides_.count[side];
+  if (count == 0 || lanes->depth_m[0] <= most_m) return most_m;
   const double kinship_there = most_kinship(side, f.direction);
-  for (int look = 0; look < kMostLooks && at != kNone; ++look) {
-    const Felt& other = felt_[at];
-    if (other.depth_m * kinship_there <= most_m) break;
-    const double cosine = dot(f.direction, other.direction);
-    const double here_m = cosine > 0 ? kinship(cosine) * other.depth_m : 0;
-    if (here_m > most_m) most_m = here_m;
-    at = other.next;
+  for (std::uint32_t i = 0; i < count; i += DeepLanes::kLanes, ++lanes) {
+    if (lanes->depth_m[0] * kinship_there <= most_m) break;
+    most_m = most_of(*lanes, f.direction, most_m);
   }
   return most_m;
 }

@@ -2,9 +2,7 @@
 // The largest depth felt in nearly a direction, over all contacts.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "rt_core/force/places.hpp"
@@ -20,7 +18,6 @@ struct Felt {
   double mass = 0;     ///< see penalty.hpp
   Spot spot;           ///< where it brought that
   std::uint32_t contact = 0;
-  std::uint32_t next = 0;  ///< of the same side, the next less deep one
 };
 
 /// A contact waiting to be put in order.
@@ -29,31 +26,44 @@ struct Ranked {
   std::uint32_t felt = 0;
 };
 
+/// Contacts side by side, to be looked at at once.
+struct DeepLanes {
+  static constexpr std::uint32_t kLanes = 8;
+  double x[kLanes];  ///< of their directions
+  double y[kLanes];
+  double z[kLanes];
+  double depth_m[kLanes];  ///< 0 beyond the last contact
+};
+
+/// Scratch: the deepest contacts of each side of a box, by depth.
+struct DeepSides {
+  static constexpr std::uint32_t kSides = 6;
+  /// Looks at contacts of one side, at most: the deepest ones. More are needed only where very many
+  /// contacts push in directions that differ by more than 30 degrees within a side; contacts of one
+  /// direction that follow one another in depth, as those of a flat face, count as the deepest.
+  static constexpr std::uint32_t kMostLooks = 64;
+
+  DeepLanes lanes[kSides][kMostLooks / DeepLanes::kLanes];
+  std::uint32_t count[kSides];  ///< of contacts
+};
+
 /// Contacts in the order of depth, apart for the six sides of a box that their directions are
 /// nearest to, so that the largest of depth times kinship is found after a few looks.
 class Depths {
  public:
-  /// Looks at contacts of one side, at most: the deepest ones. More are needed only where very many
-  /// contacts push in directions that differ by more than 30 degrees within a side; contacts of one
-  /// direction that follow one another in depth, as those of a flat face, count as the deepest.
-  static constexpr int kMostLooks = 64;
-
-  /// @param felt     outlives this; `next` is set
   /// @param ranking  scratch, [felt]
+  /// @param sides    scratch, outlives this
   /// O(n log n)
-  Depths(std::span<Felt> felt, std::span<Ranked> ranking) noexcept;
+  Depths(std::span<const Felt> felt, std::span<Ranked> ranking, DeepSides& sides) noexcept;
 
   /// Largest depth_m * kinship over the contacts within 90 degrees of f's direction, f itself
   /// included. Continuous in all of them. O(1): at most 6 kMostLooks looks.
   [[nodiscard]] double around(const Felt& f) const noexcept;
 
  private:
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  static constexpr int kSides = 6;
-  [[nodiscard]] double around(const Felt& f, int side, double most_m) const noexcept;
+  [[nodiscard]] double around(const Felt& f, std::uint32_t side, double most_m) const noexcept;
 
-  std::span<const Felt> felt_;
-  std::array<std::uint32_t, kSides> deepest_;
+  const DeepSides& sides_;
 };
 
 }  // namespace palpate::force

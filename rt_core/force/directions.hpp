@@ -9,8 +9,11 @@ namespace palpate::force {
 /// How far two unit normals count as one, by the cosine c between them: c^2 (1 + c) / 2. One for
 /// equal normals, zero for perpendicular and for opposed ones, nowhere negative; the polynomial of
 /// least degree that is so. Its mean over the sphere is 1/6: normals from all around count as the
-/// six faces of a box.
-constexpr double kinship(double cosine) noexcept { return 0.5 * cosine * cosine * (1 + cosine); }
+/// six faces of a box. Real is double, or several at once.
+template <class Real>
+constexpr Real kinship(Real cosine) noexcept {
+  return 0.5 * cosine * cosine * (1.0 + cosine);
+}
 
 /// Sum of masses times their kinship with any direction, from moments of second and third order: no
 /// pairs of masses are visited. Independent of the order of adding but for rounding.

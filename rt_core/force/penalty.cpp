@@ -37,8 +37,8 @@ void weigh(std::span<Felt> felt, const Pose& tool_pose, const Settings& settings
   const Mat3d to_tool = transpose(rotation(tool_pose.orientation));
   // In units of delta: squares of lengths in metres may leave the range of double.
   const double per_delta = 1 / settings.delta_m;
-  workspace.copies.begin(kCopies * settings.cluster_radius_m);
-  workspace.places.begin(settings.cluster_radius_m);
+  workspace.copies.begin(kCopies * settings.cluster_radius_m, felt.size());
+  workspace.places.begin(settings.cluster_radius_m, felt.size());
   for (Felt& f : felt) {
     const double depth = per_delta * f.depth_m;
     f.mass = depth * depth;
@@ -61,7 +61,7 @@ Penalty penalty(std::span<Contact> contacts, std::span<const BodyPair> pairs, st
   weigh(felt, tool_pose, settings, workspace);
   Directions directions;
   for (const Felt& f : felt) directions.add(f.direction, f.mass);
-  const Depths depths(felt, workspace.ranking);
+  const Depths depths(felt, workspace.ranking, *workspace.sides);
 
   Penalty out;
   out.places_full = workspace.copies.full() || workspace.places.full();

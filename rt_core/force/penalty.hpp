@@ -15,8 +15,9 @@ namespace palpate::force {
 struct Workspace {
   std::span<Felt> felt;       ///< [contacts]
   std::span<Ranked> ranking;  ///< [contacts]
-  Places copies;              ///< shares a contact among its copies
-  Places places;              ///< shares what is felt among contacts within cluster_radius_m
+  DeepSides* sides = nullptr;
+  Places copies;  ///< shares a contact among its copies
+  Places places;  ///< shares what is felt among contacts within cluster_radius_m
 };
 
 /// Width of the grid of copies, as a share of cluster_radius_m: nearer contacts count as one

@@ -6,6 +6,9 @@ namespace {
 
 constexpr int kMostProbes = 64;  // beyond that a corner finds no room; half full takes up to 50
 
+/// Of a table, for each corner that may come into use.
+constexpr std::size_t kRoom = 2;
+
 /// Corners farther out than this have no number; the masses of contacts there are kept.
 constexpr double kFarthest = 1 << 30;
 
@@ -30,7 +33,9 @@ std::uint32_t hash_of(std::int32_t x, std::int32_t y, std::int32_t z) noexcept {
 
 }  // namespace
 
-void Places::begin(double width_m) noexcept {
+void Places::begin(double width_m, std::size_t contacts) noexcept {
+  const std::size_t roomy = kRoom * Spot::kCorners * contacts;
+  in_use_ = roomy < table_.size() ? roomy : table_.size();
   per_m_ = width_m > 0 ? 1 / width_m : 0;
   full_ = false;
   if (++tick_ != 0) return;
@@ -39,8 +44,8 @@ void Places::begin(double width_m) noexcept {
 }
 
 std::uint32_t Places::find(std::int32_t x, std::int32_t y, std::int32_t z) noexcept {
-  auto at = static_cast<std::uint32_t>(
-      (static_cast<std::uint64_t>(hash_of(x, y, z)) * table_.size()) >> 32);
+  auto at =
+      static_cast<std::uint32_t>((static_cast<std::uint64_t>(hash_of(x, y, z)) * in_use_) >> 32);
   for (int probe = 0; probe < kMostProbes; ++probe) {
     Place& place = table_[at];
     if (place.tick != tick_) {
@@ -48,7 +53,7 @@ std::uint32_t Places::find(std::int32_t x, std::int32_t y, std::int32_t z) noexc
       return at;
     }
     if (place.x == x && place.y == y && place.z == z) return at;
-    at = at + 1 < table_.size() ? at + 1 : 0;
+    at = at + 1 < in_use_ ? at + 1 : 0;
   }
   full_ = true;
   return Spot::kNone;

@@ -45,8 +45,11 @@ class Places {
   /// Tells where the table is now: its values stay.
   void attach(std::span<Place> table) noexcept { table_ = table; }
 
-  /// Begins a tick with another grid. @param width_m  of a cube; 0: every contact keeps its mass
-  void begin(double width_m) noexcept;
+  /// Begins a tick with another grid.
+  /// @param width_m   of a cube; 0: every contact keeps its mass
+  /// @param contacts  as many will be brought, at most: few use a small part of the table, which
+  ///                  stays in the cache
+  void begin(double width_m, std::size_t contacts) noexcept;
 
   /// Brings a contact. O(1): at most 64 looks for each of four corners
   /// @param point_m  in the axes of the grid
@@ -66,6 +69,7 @@ class Places {
   [[nodiscard]] std::uint32_t find(std::int32_t x, std::int32_t y, std::int32_t z) noexcept;
 
   std::span<Place> table_;
+  std::size_t in_use_ = 0;  ///< of the table
   double per_m_ = 0;
   std::uint32_t tick_ = 0;
   bool full_ = false;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -33,7 +34,8 @@ Penalty feel(std::vector<Contact>& contacts, const Settings& settings = kSetting
   std::vector<Felt> felt(contacts.size());
   std::vector<Ranked> ranking(contacts.size());
   std::vector<Place> copies(places), table(places);
-  Workspace workspace{felt, ranking, Places(copies), Places(table)};
+  const auto sides = std::make_unique<DeepSides>();
+  Workspace workspace{felt, ranking, sides.get(), Places(copies), Places(table)};
   return penalty(contacts, kPairs, 0, pose, settings, workspace);
 }
 
@@ -73,8 +75,8 @@ Wrench by_definition(const std::vector<Contact>& contacts, const Settings& s) {
   const std::size_t n = contacts.size();
   std::vector<Place> fine(1u << 16), table(1u << 16);
   Places copies(fine), places(table);
-  copies.begin(kCopies * s.cluster_radius_m);
-  places.begin(s.cluster_radius_m);
+  copies.begin(kCopies * s.cluster_radius_m, n);
+  places.begin(s.cluster_radius_m, n);
   std::vector<double> mass(n), part(n), depth(n);
   std::vector<Spot> spot(n);
   const auto middle = [&](std::size_t i) {
@@ -398,9 +400,9 @@ TEST(Limits, scale_the_length_and_keep_the_direction) {
 }
 
 TEST(Kinship, is_one_for_equal_and_nothing_for_perpendicular_or_opposed) {
-  EXPECT_EQ(kinship(1), 1);
-  EXPECT_EQ(kinship(0), 0);
-  EXPECT_EQ(kinship(-1), 0);
+  EXPECT_EQ(kinship(1.0), 1);
+  EXPECT_EQ(kinship(0.0), 0);
+  EXPECT_EQ(kinship(-1.0), 0);
   for (double c = -1; c <= 1; c += 0.01) EXPECT_GE(kinship(c), 0);
 }
 
