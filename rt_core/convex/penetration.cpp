@@ -138,14 +138,20 @@ double expand(const HullPair& pair, Polytope& polytope, Best& best, bool& out_se
   return lower;
 }
 
+/// Squared distance of a triangle, not of its plane, from the origin.
+double squared_way(const DifferencePoint& p, const DifferencePoint& q,
+                   const DifferencePoint& r) noexcept {
+  const Vec3d points[3] = {p.point, q.point, r.point};
+  return nearest_on_triangle(points, 0, 1, 2).squared;
+}
+
 /// Of triangles in one plane, the one that the origin projects into: its corners are the deepest
 /// points.
 class Deepest {
  public:
   void add(const DifferencePoint& p, const DifferencePoint& q, const DifferencePoint& r,
            Best& best) noexcept {
-    const Vec3d points[3] = {p.point, q.point, r.point};
-    const double away2 = nearest_on_triangle(points, 0, 1, 2).squared;
+    const double away2 = squared_way(p, q, r);
     if (away2 >= least_) return;
     least_ = away2;
     best.corners[0] = p;
@@ -169,14 +175,6 @@ void keep_deepest(const HullPair& pair, const Polytope& polytope, Best& best) no
   }
 }
 
-/// How far a face itself, not its plane, is from the origin.
-double way_through(const Polytope& polytope, const PolytopeFace& face) noexcept {
-  const Vec3d corners[3] = {polytope.vertices[face.vertices[0]].point,
-                            polytope.vertices[face.vertices[1]].point,
-                            polytope.vertices[face.vertices[2]].point};
-  return sqrt_of(nearest_on_triangle(corners, 0, 1, 2).squared);
-}
-
 /// The face of a - b apart from the best one that the origin is nearest to, while it is of
 /// interest; its extent is the way through it. Whatever lies before that face is lower than it is
 /// far, so that a search that goes on until nothing is lower has met it, wherever it began.
@@ -184,13 +182,13 @@ double way_through(const Polytope& polytope, const PolytopeFace& face) noexcept 
 Best expand_apart(const HullPair& pair, Polytope& polytope, const Best& best) noexcept {
   constexpr double kApart = 0.5;  // cosines
   constexpr double kLook = 0.8;
+  double nearest = kOtherUpTo * best.extent;
   Best other;
-  other.extent = kOtherUpTo * best.extent;
   for (std::uint32_t i = 0; i < kMostOther; ++i) {
     const std::uint32_t lowest = lowest_face_apart(polytope, best.outward, kLook);
     if (lowest == kMaxPolytopeFaces) break;
     PolytopeFace& face = polytope.faces[lowest];
-    if (face.offset >= other.extent) break;
+    if (face.offset >= nearest) break;
     const DifferencePoint w = support(pair, face.normal, polytope.vertices[face.vertices[0]]);
     if (dot(face.normal, w.point) - face.offset > kDistanceGap * extent(pair)) {
       if (!add_vertex(polytope, lowest, w, kCoplanar * extent(pair))) break;
@@ -198,11 +196,12 @@ Best expand_apart(const HullPair& pair, Polytope& polytope, const Best& best) no
     }
     face.passed_over = true;
     if (dot(face.normal, best.outward) > kApart) continue;
-    const double way = way_through(polytope, face);
-    if (way < other.extent) {
-      other.extent = way;
-      other.outward = face.normal;
-    }
+    const double way = sqrt_of(squared_way(polytope.vertices[face.vertices[0]],
+                                           polytope.vertices[face.vertices[1]],
+                                           polytope.vertices[face.vertices[2]]));
+    if (way >= nearest) continue;
+    nearest = other.extent = way;
+    other.outward = face.normal;
   }
   return other;
 }
@@ -270,7 +269,7 @@ Penetration penetration(const Hull& a, const Hull& b, const RelativePose& b_in_a
   if (other.extent < kOtherUpTo * out.depth) {
     out.other_normal = -other.outward;
     const double longer = (other.extent - out.depth) / ((kOtherUpTo - 1) * out.depth);
-    out.other_share = 0.5 * (1 - longer);
+    out.other_share = longer > 0 ? 0.5 * (1 - longer) : 0.5;  // in tiny overlaps rounding counts
   }
   out.exact = out.depth - out.lower_bound <= kDistanceAccept * extent(pair);
   return out;

@@ -29,7 +29,7 @@ struct Penetration {
   /// asked for (Ways). In one overlap of a thousand a search that starts elsewhere finds another
   /// face.
   Vec3d other_normal{};
-  double other_share = 0;
+  double other_share = 0;  ///< 0 to 0.5
 };
 
 /// Working memory of one query at a time, about 26 KB; needs no initialisation.

@@ -13,11 +13,11 @@ namespace palpate::force {
 
 /// Scratch of the force stage, borrowed from the engine.
 struct Workspace {
-  std::span<Felt> felt;       ///< [contacts]
-  std::span<Ranked> ranking;  ///< [contacts]
-  DeepSides* sides = nullptr;
-  Places copies;  ///< shares a contact among its copies
-  Places places;  ///< shares what is felt among contacts within cluster_radius_m
+  std::span<Felt> felt;        ///< [contacts]
+  std::span<Ranked> ranking;   ///< [contacts]
+  DeepSides* sides = nullptr;  ///< [1]
+  Places copies;               ///< shares a contact among its copies
+  Places places;               ///< shares what is felt among contacts within cluster_radius_m
 };
 
 /// Width of the grid of copies, as a share of cluster_radius_m: nearer contacts count as one

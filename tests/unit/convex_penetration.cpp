@@ -178,6 +178,30 @@ TEST(Penetration, ways_do_not_depend_on_where_the_search_starts) {
   EXPECT_LE(different, compared / 600);
 }
 
+// Parted to within rounding, faces may not even hold the origin.
+TEST(Penetration, next_best_way_of_touching_hulls_has_a_share) {
+  Random random(13);
+  const auto scratch = std::make_unique<PenetrationScratch>();
+  for (int trial = 0; trial < 500; ++trial) {
+    const Shape a = any_shape(24, random);
+    const Shape b = any_shape(24, random);
+    RelativePose pose{rotation(random_rotation(random)),
+                      uniform(random, 0.2, 1.2) * random_unit(random)};
+    Cache cache;
+    if (distance(a.hull(), b.hull(), pose, kExact, cache).state != State::penetrating) continue;
+    const Penetration deep = penetration(a.hull(), b.hull(), pose, cache, *scratch);
+    const Vec3d touching = pose.translation - deep.depth * deep.normal;
+    for (const double left : {0.0, 1e-16, -1e-16, 1e-14, -1e-14, 1e-12, -1e-12, 1e-9, -1e-9}) {
+      pose.translation = touching + left * deep.normal;
+      Cache cold;
+      static_cast<void>(distance(a.hull(), b.hull(), pose, kExact, cold));
+      const Penetration p = penetration(a.hull(), b.hull(), pose, cold, *scratch, Ways::two);
+      ASSERT_TRUE(p.other_share >= 0 && p.other_share <= 0.5) << p.other_share << ' ' << left;
+      ASSERT_NEAR(norm(p.other_normal), p.other_share > 0 ? 1 : 0, 1e-12);
+    }
+  }
+}
+
 TEST(Penetration, concentric_boxes_leave_through_the_nearest_face) {
   const Shape a = box({0.5, 0.4, 0.3});
   const Shape b = box({0.25, 0.25, 0.25});
