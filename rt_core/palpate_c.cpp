@@ -317,6 +317,7 @@ palpate_status palpate_get_contact(const palpate_engine* engine, uint32_t index,
   out->piece_b = c.piece_b;
   out->level_b = c.level_b;
   out->reserved = 0;
+  palpate::put(c.centre_m, out->centre_m);
   return PALPATE_OK;
 }
 

@@ -127,8 +127,11 @@ struct Budget {
 /// gives points about the middle of the curve in which the surfaces cross (regions/crossing.hpp),
 /// which need not lie on either.
 struct Contact {
-  Vec3d point_a_m{};      ///< on the surface of body a
-  Vec3d point_b_m{};      ///< on the surface of body b
+  Vec3d point_a_m{};  ///< on the surface of body a
+  Vec3d point_b_m{};  ///< on the surface of body b
+  /// Where its force acts: midway between the two points or, where wide pieces meet at their faces
+  /// (levels engine), beside that, at the centre of pressure (convex/pressure.hpp).
+  Vec3d centre_m{};
   Vec3d normal{};         ///< unit, from b to a; of an overlap the way that parts the surfaces
   double distance_m = 0;  ///< signed: negative where the pieces overlap
   /// Its force on the tool is weight * stiffness * (delta - distance) along the normal.

@@ -54,6 +54,7 @@ struct Layout {
   std::span<levels::Waiting> waiting;
   std::span<levels::OpenPair> open;
   std::span<convex::PenetrationScratch> scratch;
+  std::span<convex::PressureScratch> pressure;
   // Regions engine.
   std::span<regions::PairFrame> frames;
   std::span<regions::Containment> containment;
@@ -77,6 +78,7 @@ void lay_out_levels(Arena& arena, const Limits& limits, Layout& out) noexcept {
   out.stopped = arena.array<std::uint32_t>(limits.nodes);
   out.open = arena.array<levels::OpenPair>(levels::kMaxOpenPairs);
   out.scratch = arena.array<convex::PenetrationScratch>(1);
+  out.pressure = arena.array<convex::PressureScratch>(1);
 }
 
 void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
@@ -143,6 +145,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.levels.stopped = layout.stopped;
   e.levels.open = layout.open;
   e.levels.scratch = layout.scratch.data();
+  e.levels.pressure = layout.pressure.data();
   e.regions.kernels = &regions::best_kernels();
   e.regions.frames = layout.frames;
   e.regions.containment = layout.containment;

@@ -47,14 +47,6 @@ std::vector<Vec3d> sample_of(std::span<const Vec3d> points) {
   return sample;
 }
 
-/// Any unit vector across n, which has length 1.
-Vec3d across(Vec3d n) {
-  const Vec3d least = std::abs(n.x) < std::abs(n.y)
-                          ? (std::abs(n.x) < std::abs(n.z) ? Vec3d{1, 0, 0} : Vec3d{0, 0, 1})
-                          : (std::abs(n.y) < std::abs(n.z) ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1});
-  return unit(cross(n, least));
-}
-
 class Search {
  public:
   explicit Search(std::span<const Vec3d> points) : sample_(sample_of(points)) {}

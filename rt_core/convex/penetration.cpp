@@ -25,15 +25,6 @@ struct Best {
 
 Vec3d unit(Vec3d v) noexcept { return (1 / norm(v)) * v; }
 
-/// A unit vector across `v`.
-Vec3d across(Vec3d v) noexcept {
-  const double x = v.x * v.x;
-  const double y = v.y * v.y;
-  const double z = v.z * v.z;
-  if (x <= y && x <= z) return unit(cross(v, Vec3d{1, 0, 0}));
-  return unit(y <= z ? cross(v, Vec3d{0, 1, 0}) : cross(v, Vec3d{0, 0, 1}));
-}
-
 /// What spans a - b: up to four of its points, and a unit direction across them where fewer do.
 struct Span {
   DifferencePoint corners[4];

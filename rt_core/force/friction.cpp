@@ -21,7 +21,7 @@ Pressure pressure_of(std::uint32_t pair, std::span<const Contact> contacts,
     if (c.pair != pair) continue;
     const double n = size_of(c, settings);
     out.size_N += n;
-    out.centre_m += (0.5 * n) * (c.point_a_m + c.point_b_m);
+    out.centre_m += n * c.centre_m;
   }
   if (out.size_N > 0) out.centre_m = (1 / out.size_N) * out.centre_m;
   return out;

@@ -23,7 +23,7 @@ std::span<Felt> gather(std::span<Contact> contacts, std::span<const BodyPair> pa
     const double depth_m = delta_m - c.distance_m;
     if ((pair.a != tool && pair.b != tool) || !(depth_m > 0)) continue;
     Felt& felt = out[count++];
-    felt.point_m = 0.5 * (c.point_a_m + c.point_b_m) - origin_m;
+    felt.point_m = c.centre_m - origin_m;
     felt.direction = pair.a == tool ? c.normal : -c.normal;
     felt.depth_m = depth_m;
     felt.contact = i;

@@ -64,6 +64,16 @@ inline T norm(Vec3<T> a) noexcept {
   return sqrt_of(squared_norm(a));
 }
 
+/// A unit vector across `v`, which is not 0.
+inline Vec3d across(Vec3d v) noexcept {
+  const double x = v.x * v.x;
+  const double y = v.y * v.y;
+  const double z = v.z * v.z;
+  const Vec3d least = x <= y && x <= z ? Vec3d{1, 0, 0} : y <= z ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+  const Vec3d out = cross(v, least);
+  return (1 / norm(out)) * out;
+}
+
 template <class To, class From>
 constexpr Vec3<To> vec_cast(Vec3<From> a) noexcept {
   return {static_cast<To>(a.x), static_cast<To>(a.y), static_cast<To>(a.z)};

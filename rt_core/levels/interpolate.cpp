@@ -85,7 +85,8 @@ class Group {
       const Node& child = work_.tree[c];
       if (child.report == kNone) continue;
       any = true;
-      work_.report.blend(pair_, child, of_parent.found ? of_parent : without_force(child), share);
+      const LeafContact other = of_parent.found ? of_parent : without_force(child);
+      work_.report.blend(pair_, child, of_parent.found ? parent_ : child, other, share);
     }
     if (any || !of_parent.found) return;
     LeafContact fading = of_parent;

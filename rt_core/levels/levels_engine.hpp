@@ -10,6 +10,7 @@
 #include "rt_core/base/meter.hpp"
 #include "rt_core/base/tally.hpp"
 #include "rt_core/convex/penetration.hpp"
+#include "rt_core/convex/pressure.hpp"
 #include "rt_core/levels/body_pair.hpp"
 #include "rt_core/levels/rules.hpp"
 #include "rt_core/levels/test_tree.hpp"
@@ -36,6 +37,7 @@ struct QueryMemory {
   std::span<OpenPair> open;          ///< [kMaxOpenPairs]
   std::span<Contact> contacts;       ///< [limits.contacts]
   convex::PenetrationScratch* scratch = nullptr;
+  convex::PressureScratch* pressure = nullptr;
   std::size_t raise_next = 0;  ///< where in the front raising goes on
   std::uint32_t ticks = 0;     ///< marks inner nodes that interpolation has been to
   std::uint64_t query_ns = 0;  ///< time of a query, smoothed; 0 without a clock

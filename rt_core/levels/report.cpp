@@ -20,6 +20,33 @@ Vec3d in_world(const PairState& pair, Vec3d point) noexcept {
   return pair.centre_a_m + pair.rotation_a * (pair.unit_m * point);
 }
 
+/// Radius from which pieces are wide, in deltas: within smaller ones a contact's place is as good
+/// as another.
+constexpr double kWide = 8;
+
+/// And its hull is surface wherever it is met.
+bool is_wide(const image::Piece& piece, double scale, double delta) noexcept {
+  return scale * static_cast<double>(piece.radius) >= kWide * delta &&
+         !has(piece, image::PieceFlag::back_open);
+}
+
+/// Where the force of a node's contact acts, in the world.
+Vec3d centre_m_of(const PairState& pair, const Node& node, const LeafContact& contact,
+                  convex::PressureScratch& scratch) noexcept {
+  const Vec3d middle_m = 0.5 * (in_world(pair, contact.point_a) + in_world(pair, contact.point_b));
+  const bool dived = has_dived(node);
+  const image::Piece& a = pair.image_a->pieces[dived ? node.leaf_a : node.piece_a];
+  const image::Piece& b = pair.image_b->pieces[dived ? node.leaf_b : node.piece_b];
+  if (!is_wide(a, pair.scale_a, pair.delta) || !is_wide(b, pair.scale_b, pair.delta))
+    return middle_m;
+  const convex::Hull hull_a = hull_of(*pair.image_a, a, pair.scale_a);
+  const convex::Hull hull_b = hull_of(*pair.image_b, b, pair.scale_b);
+  const Vec3d offset = convex::offset_of_pressure(
+      {hull_a, hull_b, pair.b_in_a}, contact.normal, pair.delta - contact.distance,
+      0.5 * (contact.point_a + contact.point_b), scratch);
+  return middle_m + pair.rotation_a * (pair.unit_m * offset);
+}
+
 Vec3d mixed(double share, Vec3d own, Vec3d other) noexcept {
   return share * own + (1 - share) * other;
 }
@@ -82,6 +109,7 @@ void Report::replace(const PairState& pair, const Node& node, const LeafContact&
   Contact& out = contacts_[node.report];
   out.point_a_m = in_world(pair, contact.point_a);
   out.point_b_m = in_world(pair, contact.point_b);
+  out.centre_m = centre_m_of(pair, node, contact, scratch_);
   out.normal = pair.rotation_a * contact.normal;
   out.distance_m = contact.distance * pair.unit_m;
   out.weight = 0;
@@ -92,13 +120,16 @@ void Report::replace(const PairState& pair, const Node& node, const LeafContact&
   out.level_b = piece_b(pair, node).level;
 }
 
-void Report::blend(const PairState& pair, const Node& node, const LeafContact& other,
-                   double share) noexcept {
+void Report::blend(const PairState& pair, const Node& node, const Node& other_node,
+                   const LeafContact& other, double share) noexcept {
   Contact& c = contacts_[node.report];
   const double lower_m = certain_now(pair, node) * pair.unit_m;  // what was certain before mixing
   if (lower_m < mixed_lower_m_) mixed_lower_m_ = lower_m;
   c.point_a_m = mixed(share, c.point_a_m, in_world(pair, other.point_a));
   c.point_b_m = mixed(share, c.point_b_m, in_world(pair, other.point_b));
+  if (&other_node != &node) {
+    c.centre_m = mixed(share, c.centre_m, centre_m_of(pair, other_node, other, scratch_));
+  }
   const Vec3d normal = mixed(share, c.normal, pair.rotation_a * other.normal);
   const double length = norm(normal);
   if (length > 0) c.normal = (1 / length) * normal;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "rt_core/convex/pressure.hpp"
 #include "rt_core/levels/body_pair.hpp"
 #include "rt_core/levels/leaf_contact.hpp"
 #include "rt_core/levels/test_tree.hpp"
@@ -40,7 +41,8 @@ LeafContact remeasured(const PairState& pair, const Node& node) noexcept;
 
 class Report {
  public:
-  explicit Report(std::span<Contact> contacts) noexcept : contacts_(contacts) {}
+  Report(std::span<Contact> contacts, convex::PressureScratch& scratch) noexcept
+      : contacts_(contacts), scratch_(scratch) {}
 
   /// Adds the contact of a node that has none yet in this tick. False where there is no room.
   bool add(const PairState& pair, Node& node, const LeafContact& contact) noexcept;
@@ -51,10 +53,10 @@ class Report {
   /// Puts another one in the place of what was added for a node.
   void replace(const PairState& pair, const Node& node, const LeafContact& contact) noexcept;
 
-  /// Mixes a node's contact with another one: `share` of its own, the rest of `other`. At delta or
-  /// more it is dropped.
-  void blend(const PairState& pair, const Node& node, const LeafContact& other,
-             double share) noexcept;
+  /// Mixes a node's contact with one of another node (or its own): `share` of its own, the rest of
+  /// `other`. At delta or more it is dropped.
+  void blend(const PairState& pair, const Node& node, const Node& other_node,
+             const LeafContact& other, double share) noexcept;
 
   /// Closes gaps; fills in contacts, min_distance_m and upper_m, lowers unresolved_lower_m to what
   /// was mixed.
@@ -64,6 +66,7 @@ class Report {
   void note_upper(const PairState& pair, const Node& node, const LeafContact& contact) noexcept;
 
   std::span<Contact> contacts_;
+  convex::PressureScratch& scratch_;
   std::uint32_t count_ = 0;
   double upper_m_ = std::numeric_limits<double>::infinity();
   double mixed_lower_m_ = std::numeric_limits<double>::infinity();

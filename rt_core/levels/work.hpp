@@ -23,7 +23,7 @@ struct Work {
         tally(query_tally),
         may_end(query_rules.exact ? discipline == Discipline::by_worth : query_meter.limited()),
         probe(query_rules, query_meter, query_tally, discipline),
-        report(query_memory.contacts),
+        report(query_memory.contacts, *query_memory.pressure),
         waiting(query_memory.waiting, discipline),
         stopped(query_memory.stopped) {}
 

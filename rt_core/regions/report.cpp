@@ -167,6 +167,7 @@ class Report {
     Contact& out = memory_.contacts[result_.contacts++];
     out.point_a_m = pair.centre_a_m + pair.rotation_a * (pair.unit_m * found.point_a);
     out.point_b_m = pair.centre_a_m + pair.rotation_a * (pair.unit_m * found.point_b);
+    out.centre_m = 0.5 * (out.point_a_m + out.point_b_m);
     out.normal = pair.rotation_a * found.normal;
     out.distance_m = found.distance * pair.unit_m;
     out.weight = 0;

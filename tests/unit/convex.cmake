@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 palpate_test_support(convex_support SOURCES "${CMAKE_CURRENT_LIST_DIR}/convex_shapes.cpp" LIBS palpate_rt)
-foreach(part degenerate penetration random triangles)
+foreach(part degenerate penetration pressure random triangles)
   palpate_test(test_convex_${part}
     SOURCES "${CMAKE_CURRENT_LIST_DIR}/convex_${part}.cpp" LIBS convex_support)
 endforeach()

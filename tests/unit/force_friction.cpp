@@ -18,7 +18,7 @@ const Settings kSettings{.delta_m = 0.001, .stiffness_N_per_m = kStiffness_N_per
 /// A contact that pushes the tool along a normal with a force.
 Contact pressed(Vec3d point_m, Vec3d normal, double force_N, std::uint32_t pair = 0) {
   Contact c;
-  c.point_a_m = c.point_b_m = point_m;
+  c.point_a_m = c.point_b_m = c.centre_m = point_m;
   c.normal = normal;
   c.weight = 1;
   c.distance_m = kSettings.delta_m - force_N / kStiffness_N_per_m;

@@ -21,6 +21,7 @@ Contact at(Vec3d point, Vec3d normal, double distance, std::uint32_t pair = 0) {
   Contact c;
   c.point_a_m = point + 0.5 * distance * normal;
   c.point_b_m = point - 0.5 * distance * normal;
+  c.centre_m = point;
   c.normal = normal;
   c.distance_m = distance;
   c.pair = pair;
@@ -79,9 +80,7 @@ Wrench by_definition(const std::vector<Contact>& contacts, const Settings& s) {
   places.begin(s.cluster_radius_m, n);
   std::vector<double> mass(n), part(n), depth(n);
   std::vector<Spot> spot(n);
-  const auto middle = [&](std::size_t i) {
-    return 0.5 * (contacts[i].point_a_m + contacts[i].point_b_m);
-  };
+  const auto middle = [&](std::size_t i) { return contacts[i].centre_m; };
   for (std::size_t i = 0; i < n; ++i) {
     depth[i] = std::max(0.0, s.delta_m - contacts[i].distance_m);
     mass[i] = depth[i] * depth[i] / (s.delta_m * s.delta_m);
@@ -341,6 +340,7 @@ TEST(Penalty, moves_with_the_scene) {
   for (Contact& m : moved) {
     m.point_a_m = turn * m.point_a_m + pose.position_m;
     m.point_b_m = turn * m.point_b_m + pose.position_m;
+    m.centre_m = turn * m.centre_m + pose.position_m;
     m.normal = turn * m.normal;
   }
   const Penalty q = feel(moved, kSettings, pose);
@@ -382,6 +382,7 @@ TEST(Penalty, scales_from_micrometres_to_kilometres) {
     for (Contact& contact : c) {
       contact.point_a_m = scale * contact.point_a_m;
       contact.point_b_m = scale * contact.point_b_m;
+      contact.centre_m = scale * contact.centre_m;
       contact.distance_m *= scale;
     }
     EXPECT_NEAR(norm(feel(c, s).wrench.force_N - p.wrench.force_N), 0, 1e-6);

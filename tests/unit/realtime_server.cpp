@@ -186,7 +186,7 @@ Status rubbed(const Pose& tool, TickResult& out, std::vector<Contact>& contact) 
   const double depth_m = kDelta_m - tool.position_m.z;
   if (depth_m <= 0) return Status::ok;
   contact.resize(1);
-  contact[0].point_a_m = contact[0].point_b_m = tool.position_m;
+  contact[0].point_a_m = contact[0].point_b_m = contact[0].centre_m = tool.position_m;
   contact[0].normal = {0, 0, 1};
   contact[0].distance_m = tool.position_m.z;
   contact[0].weight = 1;
