@@ -119,8 +119,8 @@ typedef struct palpate_contact {
   double point_a_m[3], point_b_m[3], normal[3];
   double distance_m, weight;
   uint32_t pair, piece_a, level_a, piece_b, level_b, reserved;
-  double
-      centre_m[3]; /* where its force acts: between the points or, where wide faces meet, beside */
+  /* Where its force acts: between the points or, where wide faces meet, beside that. */
+  double centre_m[3];
 } palpate_contact;
 
 typedef struct palpate_result {

@@ -282,8 +282,8 @@ void add_pair(PressureScratch& s, const Facet& a, const Facet& b, double reach,
 
 }  // namespace
 
-Vec3d offset_of_pressure(const HullPair& pair, Vec3d normal, double reach, Vec3d middle,
-                         PressureScratch& scratch) noexcept {
+PressureCentre centre_of_pressure(const HullPair& pair, Vec3d normal, double reach, Vec3d middle,
+                                  PressureScratch& scratch) noexcept {
   if (pair.a.count > kMostCarrying || pair.b.count > kMostCarrying || !(reach > 0)) return {};
   const Vec3d u = across(normal);
   const Vec3d v = palpate::cross(normal, u);
@@ -306,8 +306,9 @@ Vec3d offset_of_pressure(const HullPair& pair, Vec3d normal, double reach, Vec3d
       add_pair(scratch, scratch.a.facets[i], scratch.b.facets[k], reach, pressure);
   }
   if (!(pressure.all > std::numeric_limits<double>::min())) return {};
-  const double share = (flat_a < flat_b ? flat_a : flat_b) / pressure.all;
-  return (share * pressure.moment_x) * u + (share * pressure.moment_y) * v;
+  const double across_u = pressure.moment_x / pressure.all;
+  const double across_v = pressure.moment_y / pressure.all;
+  return {middle + across_u * u + across_v * v, flat_a < flat_b ? flat_a : flat_b};
 }
 
 }  // namespace palpate::convex

@@ -50,6 +50,15 @@ struct PressureScratch {
   Polygon common, kept;
 };
 
+/// In the coordinates of a.
+struct PressureCentre {
+  Vec3d at{};        ///< beside the middle of the closest points, across the normal
+  double share = 0;  ///< how far the force acts there and not at the closest points: 0 where hulls
+                     ///< have more than kMostCarrying vertices or nothing is left; less than 1
+                     ///< where from its lowest vertex a hull rises by 1/16 and more everywhere, 0
+                     ///< from 1/8 on: the centre is then no farther off than a few times the reach
+};
+
 /// The centre of pressure of an elastic foundation between two hulls: of what is left of `reach`
 /// between their faces, seen along the normal, the mean place weighted by how much is left there.
 ///
@@ -63,11 +72,8 @@ struct PressureScratch {
 /// @param normal  unit, from b to a, in the coordinates of a
 /// @param reach   how much farther apart, along the normal, the hulls would carry no more
 /// @param middle  of the closest points, in the coordinates of a
-/// @return the way from there to the centre, across the normal. 0 where hulls have more than
-/// kMostCarrying vertices or nothing is left; less and less of it where from its lowest vertex a
-/// hull rises by 1/16 to 1/8 and more everywhere: it is then no more than a few times the reach
 /// Cost: some vertices * facets of either, and facets of one * facets of the other. Real-time safe.
-[[nodiscard]] Vec3d offset_of_pressure(const HullPair& pair, Vec3d normal, double reach,
-                                       Vec3d middle, PressureScratch& scratch) noexcept;
+[[nodiscard]] PressureCentre centre_of_pressure(const HullPair& pair, Vec3d normal, double reach,
+                                                Vec3d middle, PressureScratch& scratch) noexcept;
 
 }  // namespace palpate::convex

@@ -23,7 +23,7 @@ std::span<Felt> gather(std::span<Contact> contacts, std::span<const BodyPair> pa
     const double depth_m = delta_m - c.distance_m;
     if ((pair.a != tool && pair.b != tool) || !(depth_m > 0)) continue;
     Felt& felt = out[count++];
-    felt.point_m = c.centre_m - origin_m;
+    felt.point_m = 0.5 * (c.point_a_m + c.point_b_m) - origin_m;
     felt.direction = pair.a == tool ? c.normal : -c.normal;
     felt.depth_m = depth_m;
     felt.contact = i;
@@ -72,11 +72,13 @@ Penalty penalty(std::span<Contact> contacts, std::span<const BodyPair> pairs, st
     const double share = around > f.mass ? f.mass / around : 1;
     const double depth_m = share * depths.around(f);
     const Vec3d force_N = (settings.stiffness_N_per_m * depth_m) * f.direction;
-    contacts[f.contact].weight = depth_m / f.depth_m;
+    Contact& contact = contacts[f.contact];
+    contact.weight = depth_m / f.depth_m;
+    const Vec3d arm_m = contact.centre_m - tool_pose.position_m;
     out.directions += share;
     out.wrench.force_N += force_N;
-    out.wrench.torque_Nm += cross(f.point_m, force_N);
-    out.stiffness.add_square(vec6(f.direction, cross(f.point_m, f.direction)),
+    out.wrench.torque_Nm += cross(arm_m, force_N);
+    out.stiffness.add_square(vec6(f.direction, cross(arm_m, f.direction)),
                              settings.stiffness_N_per_m * share);
   }
   return out;

@@ -56,6 +56,7 @@ struct Penalty {
 ///   turned by a small angle, it gets back the torque of two springs of k, one at each end;
 /// - a contact that comes within delta brings nothing at first, and everything is continuous in
 ///   distances, normals and points, and independent of the order of contacts but for rounding.
+/// The torque is that of the forces at the contacts' centres (Contact::centre_m).
 /// Contacts with every body count together: it does not matter how the surroundings are cut up.
 ///
 /// Sets Contact::weight, 0 for pairs without the tool. O(n log n). No memory of its own.

@@ -20,6 +20,10 @@ Vec3d in_world(const PairState& pair, Vec3d point) noexcept {
   return pair.centre_a_m + pair.rotation_a * (pair.unit_m * point);
 }
 
+Vec3d mixed(double share, Vec3d own, Vec3d other) noexcept {
+  return share * own + (1 - share) * other;
+}
+
 /// Radius from which pieces are wide, in deltas: within smaller ones a contact's place is as good
 /// as another.
 constexpr double kWide = 8;
@@ -33,22 +37,18 @@ bool is_wide(const image::Piece& piece, double scale, double delta) noexcept {
 /// Where the force of a node's contact acts, in the world.
 Vec3d centre_m_of(const PairState& pair, const Node& node, const LeafContact& contact,
                   convex::PressureScratch& scratch) noexcept {
-  const Vec3d middle_m = 0.5 * (in_world(pair, contact.point_a) + in_world(pair, contact.point_b));
+  const Vec3d middle = 0.5 * (contact.point_a + contact.point_b);
   const bool dived = has_dived(node);
   const image::Piece& a = pair.image_a->pieces[dived ? node.leaf_a : node.piece_a];
   const image::Piece& b = pair.image_b->pieces[dived ? node.leaf_b : node.piece_b];
-  if (!is_wide(a, pair.scale_a, pair.delta) || !is_wide(b, pair.scale_b, pair.delta))
-    return middle_m;
-  const convex::Hull hull_a = hull_of(*pair.image_a, a, pair.scale_a);
-  const convex::Hull hull_b = hull_of(*pair.image_b, b, pair.scale_b);
-  const Vec3d offset = convex::offset_of_pressure(
-      {hull_a, hull_b, pair.b_in_a}, contact.normal, pair.delta - contact.distance,
-      0.5 * (contact.point_a + contact.point_b), scratch);
-  return middle_m + pair.rotation_a * (pair.unit_m * offset);
-}
-
-Vec3d mixed(double share, Vec3d own, Vec3d other) noexcept {
-  return share * own + (1 - share) * other;
+  convex::PressureCentre centre;
+  if (is_wide(a, pair.scale_a, pair.delta) && is_wide(b, pair.scale_b, pair.delta)) {
+    const convex::Hull hull_a = hull_of(*pair.image_a, a, pair.scale_a);
+    const convex::Hull hull_b = hull_of(*pair.image_b, b, pair.scale_b);
+    centre = convex::centre_of_pressure({hull_a, hull_b, pair.b_in_a}, contact.normal,
+                                        pair.delta - contact.distance, middle, scratch);
+  }
+  return in_world(pair, middle + centre.share * (centre.at - middle));
 }
 
 }  // namespace

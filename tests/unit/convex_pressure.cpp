@@ -45,9 +45,10 @@ Vec3d centre(Placed& placed, double gap, double reach, Vec3d middle = {0.03, -0.
   static PressureScratch scratch;
   const RelativePose pose = placed.pose();
   const Mat3d to_a = transpose(placed.turn_a);
-  const Vec3d offset = offset_of_pressure({placed.a, placed.b, pose}, to_a * kUp, reach,
-                                          to_a * (middle - placed.at_a), scratch);
-  return middle + placed.turn_a * offset;
+  const PressureCentre found = centre_of_pressure({placed.a, placed.b, pose}, to_a * kUp, reach,
+                                                  to_a * (middle - placed.at_a), scratch);
+  if (!(found.share > 0)) return middle;
+  return middle + found.share * (placed.turn_a * found.at + placed.at_a - middle);
 }
 
 /// Height of the lower side (sign 1) or depth of the upper side (-1) over a place; nothing beside.
@@ -120,7 +121,7 @@ Vec3d added_up(const Placed& placed, double gap, double reach) {
 
 double across_distance(Vec3d p, Vec3d q) { return std::hypot(p.x - q.x, p.y - q.y); }
 
-TEST(PressureOffset, of_parallel_faces_leads_to_the_middle_of_their_common_part) {
+TEST(CentreOfPressure, of_parallel_faces_is_the_middle_of_their_common_part) {
   const Shape small = box({0.1, 0.1, 0.1});
   const Shape large = box({0.5, 0.5, 0.1});
   for (const Vec3d at : {Vec3d{}, Vec3d{0.2, -0.3, 0}, Vec3d{0.5, 0, 0}, Vec3d{0.55, -0.45, 0}}) {
@@ -133,7 +134,7 @@ TEST(PressureOffset, of_parallel_faces_leads_to_the_middle_of_their_common_part)
   }
 }
 
-TEST(PressureOffset, sets_a_tilted_face_back_as_its_second_moment_says) {
+TEST(CentreOfPressure, sets_a_tilted_face_back_as_its_second_moment_says) {
   const Shape small = box({0.1, 0.05, 0.1});
   const Shape large = box({0.5, 0.5, 0.1});
   constexpr double kReach = 0.02;
@@ -167,7 +168,7 @@ Shape bowl(std::uint32_t corners, double slope, double radius, Random& random) {
   return convex_hull(points);
 }
 
-TEST(PressureOffset, leads_where_springs_added_up_over_all_faces_do) {
+TEST(CentreOfPressure, is_that_of_springs_added_up_over_all_faces) {
   Random random(1);
   double largest = 0;
   for (int i = 0; i < 60; ++i) {
@@ -192,7 +193,7 @@ TEST(PressureOffset, leads_where_springs_added_up_over_all_faces_do) {
   RecordProperty("largest", std::to_string(largest));
 }
 
-TEST(PressureOffset, moves_without_leaps_as_hulls_rock_and_slide) {
+TEST(CentreOfPressure, moves_without_leaps_as_hulls_rock_and_slide) {
   const Shape a = box({0.1, 0.1, 0.1});
   const Shape b = box({0.5, 0.5, 0.1});
   constexpr int kSteps = 4000;
@@ -223,7 +224,7 @@ TEST(PressureOffset, moves_without_leaps_as_hulls_rock_and_slide) {
   }
 }
 
-TEST(PressureOffset, moves_without_leaps_where_more_faces_come_within_reach_than_are_looked_at) {
+TEST(CentreOfPressure, moves_without_leaps_where_more_faces_come_within_reach_than_are_looked_at) {
   Random random(4);
   constexpr int kSteps = 8000;
   const Shape b = box({0.5, 0.5, 0.1});
@@ -248,7 +249,7 @@ TEST(PressureOffset, moves_without_leaps_where_more_faces_come_within_reach_than
   }
 }
 
-TEST(PressureOffset, does_not_depend_on_which_hull_is_a) {
+TEST(CentreOfPressure, does_not_depend_on_which_hull_is_a) {
   Random random(2);
   for (int i = 0; i < 200; ++i) {
     const Shape a = any_shape(kMostCarrying, random);
@@ -262,16 +263,18 @@ TEST(PressureOffset, does_not_depend_on_which_hull_is_a) {
     const Vec3d middle = 0.5 * random_unit(random);
     const double reach = uniform(random, 0.01, 1);
     static PressureScratch scratch;
-    const Vec3d p = offset_of_pressure({of_a, of_b, pose}, normal, reach, middle, scratch);
-    const Vec3d q = offset_of_pressure({of_b, of_a, back}, -(back.rotation * normal), reach,
-                                       back.rotation * middle + back.translation, scratch);
-    EXPECT_NEAR(norm(pose.rotation * q - p), 0, 1e-6) << i;
-    EXPECT_NEAR(dot(p, normal), 0, 1e-12) << i;  // beside the middle
-    EXPECT_TRUE(std::isfinite(norm(p)));
+    const PressureCentre p = centre_of_pressure({of_a, of_b, pose}, normal, reach, middle, scratch);
+    const PressureCentre q =
+        centre_of_pressure({of_b, of_a, back}, -(back.rotation * normal), reach,
+                           back.rotation * middle + back.translation, scratch);
+    EXPECT_NEAR(p.share, q.share, 1e-9) << i;
+    if (!(p.share > 0)) continue;
+    EXPECT_NEAR(norm(pose.rotation * q.at + pose.translation - p.at), 0, 1e-6) << i;
+    EXPECT_NEAR(dot(p.at - middle, normal), 0, 1e-12) << i;
   }
 }
 
-TEST(PressureOffset, is_nothing_where_there_is_no_face_to_find_it_on) {
+TEST(CentreOfPressure, counts_for_nothing_where_there_is_no_face_to_find_it_on) {
   Random random(3);
   const Shape plate = box({0.5, 0.5, 0.1});
   constexpr Vec3d kMiddle{0.03, -0.02, 0};
@@ -291,7 +294,7 @@ TEST(PressureOffset, is_nothing_where_there_is_no_face_to_find_it_on) {
   EXPECT_EQ(asked(triangle({0, 0, 0}, {0.1, 0, 0}, {0, 0, 0.1}), {}, 0.01), 0);  // a standing sheet
 }
 
-TEST(PressureOffset, of_a_triangle_lying_on_a_face_leads_to_its_own_centre) {
+TEST(CentreOfPressure, of_a_triangle_lying_on_a_face_is_its_own) {
   const Shape flat = triangle({0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0});
   const Shape plate = box({0.5, 0.5, 0.1});
   Placed placed{flat.hull(), plate.hull(), {}, {}};
@@ -300,7 +303,7 @@ TEST(PressureOffset, of_a_triangle_lying_on_a_face_leads_to_its_own_centre) {
   EXPECT_NEAR(found.y, 0.1, 1e-7);
 }
 
-TEST(PressureOffset, has_room_for_the_most_corners) {
+TEST(CentreOfPressure, has_room_for_the_most_corners) {
   const Shape a = prism(kMostCarrying / 2, 0.2, 0.1);
   for (const double turn : {0.0, 0.01, 0.1}) {
     Placed placed{a.hull(), a.hull(), rotation(about(kUp, turn)), {0.05, 0, 0}};
