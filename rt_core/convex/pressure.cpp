@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/convex/pressure.hpp"
 
-#include <bit>
 #include <limits>
 
 namespace palpate::convex {
@@ -10,12 +9,16 @@ namespace {
 using Corner = PressureScratch::Corner;
 using Facet = PressureScratch::Facet;
 using Polygon = PressureScratch::Polygon;
+using Set = PressureScratch::Set;
 using Side = PressureScratch::Side;
 
 /// Faces of up to one slope carry, those from the other one on do not: what of them is within reach
 /// is narrow.
 constexpr double kCarries = 0.25;
 constexpr double kWall = 0.5;
+/// Share of the reach within which all faces are looked at: from less the centre counts less, so
+/// that it is the closest points' where too many faces meet there.
+constexpr double kEnough = 0.02;
 // In units.
 /// Vertices no farther above a plane are in it: baked ones are rounded to 6e-8.
 constexpr double kInPlane = 1e-6;
@@ -40,7 +43,8 @@ struct View {
   Corner of(Vec3d p) const noexcept { return {dot(p, u) - from.x, dot(p, v) - from.y, dot(p, up)}; }
 };
 
-/// The lowest vertex comes first, at height 0.
+/// Vertices of faces that carry: seen from the lowest one, which comes first at height 0, they rise
+/// no more steeply than such faces do.
 void look(const Hull& hull, const View& view, Side& out) noexcept {
   auto& vertices = out.vertices;
   vertices.count = 0;
@@ -51,8 +55,15 @@ void look(const Hull& hull, const View& view, Side& out) noexcept {
   }
   const Corner first = vertices.at[lowest];
   vertices.at[lowest] = vertices.at[0];
-  vertices.at[0] = first;
-  for (std::uint32_t i = 0; i < vertices.count; ++i) vertices.at[i].height -= first.height;
+  vertices.at[0] = {first.x, first.y, 0};
+  const std::uint32_t all = vertices.count;
+  vertices.count = 1;
+  for (std::uint32_t i = 1; i < all; ++i) {
+    const Corner& c = vertices.at[i];
+    const double rise = c.height - first.height - kInPlane;
+    if (rise <= 0 || rise * rise <= kWall * kWall * squared_distance(first, c))
+      vertices.add({c.x, c.y, c.height - first.height});
+  }
 }
 
 /// The least slope from the lowest vertex to another one. The line between the two lies on the
@@ -81,7 +92,7 @@ double fading(double squared_slope, double from, double to) noexcept {
 
 /// How far a hull is flat or has a level edge at its lowest vertex.
 double flatness(const Gentlest& gentlest) noexcept {
-  return fading(gentlest.squared_slope, 0.0625, 0.125);
+  return fading(gentlest.squared_slope, 0.04, 0.1);
 }
 
 double carried_by(const Facet& facet) noexcept {
@@ -93,13 +104,21 @@ double height_of(const Facet& facet, const Corner& c) noexcept {
   return facet.at_0 + facet.slope_x * c.x + facet.slope_y * c.y;
 }
 
-/// The face of the hull's lower side to the right of the way from p to q, an edge of it: the least
-/// steep plane through both and another vertex there. False where there is none but walls.
-bool find_facet(const Side& side, std::uint32_t from, std::uint32_t to, Facet& out) noexcept {
+/// The face of the hull's lower side to the right of the way from one vertex to another, an edge of
+/// it: the least steep plane through both and a third one there.
+struct Turn {
+  bool found = false;  ///< or there is none but walls
+  std::uint32_t third = 0;
+  double slope_x = 0;
+  double slope_y = 0;
+};
+
+Turn turn_about(const Side& side, std::uint32_t from, std::uint32_t to) noexcept {
+  Turn out;
   const Corner& p = side.vertices.at[from];
   const Corner& q = side.vertices.at[to];
   const double length = sqrt_of(squared_distance(p, q));
-  if (!(length > kOnEdge)) return false;
+  if (!(length > kOnEdge)) return out;
   const double along_x = (q.x - p.x) / length;
   const double along_y = (q.y - p.y) / length;
   const double along = (q.height - p.height) / length;
@@ -111,18 +130,22 @@ bool find_facet(const Side& side, std::uint32_t from, std::uint32_t to, Facet& o
     const double beside = x * along_y - y * along_x;
     if (!(beside > kOnEdge)) continue;
     const double rise = c.height - p.height - along * (x * along_x + y * along_y);
-    if (rise < across * beside) across = rise / beside;
+    if (!(rise < across * beside)) continue;
+    across = rise / beside;
+    out.found = true;
+    out.third = i;
   }
-  if (!(across < kWall)) return false;
   out.slope_x = along * along_x + across * along_y;
   out.slope_y = along * along_y - across * along_x;
-  out.at_0 = p.height - out.slope_x * p.x - out.slope_y * p.y;
-  out.members = 0;
+  return out;
+}
+
+void gather_members(const Side& side, Facet& facet) noexcept {
+  facet.members.clear();
   for (std::uint32_t i = 0; i < side.vertices.count; ++i) {
     const Corner& c = side.vertices.at[i];
-    if (c.height - height_of(out, c) <= kInPlane) out.members |= 1u << i;
+    if (c.height - height_of(facet, c) <= kInPlane) facet.members.add(i);
   }
-  return true;
 }
 
 /// Puts a member at the end of a chain that begins at `first`, and takes away what is not to the
@@ -141,18 +164,19 @@ void extend(const Side& side, Facet& facet, std::uint32_t first, std::uint8_t me
 bool draw_outline(const Side& side, Facet& facet) noexcept {
   std::uint8_t sorted[kMostCarrying];
   std::uint32_t count = 0;
-  for (std::uint32_t rest = facet.members; rest != 0; rest &= rest - 1) {
-    const auto member = static_cast<std::uint8_t>(std::countr_zero(rest));
+  for (std::uint32_t i = 0; i < side.vertices.count; ++i) {
+    if (!facet.members.has(i)) continue;
     std::uint32_t hole = count++;
-    const Corner& c = side.vertices.at[member];
+    const Corner& c = side.vertices.at[i];
     for (; hole > 0; --hole) {
       const Corner& before = side.vertices.at[sorted[hole - 1]];
       if (before.x < c.x || (before.x == c.x && before.y <= c.y)) break;
       sorted[hole] = sorted[hole - 1];
     }
-    sorted[hole] = member;
+    sorted[hole] = static_cast<std::uint8_t>(i);
   }
-  facet.count = facet.known_beyond = 0;
+  facet.known_beyond.clear();
+  facet.count = 0;
   for (std::uint32_t i = 0; i < count; ++i) extend(side, facet, 0, sorted[i]);
   const std::uint32_t last = facet.count - 1;
   for (std::uint32_t i = count - 1; i-- > 0;) extend(side, facet, last, sorted[i]);
@@ -160,21 +184,35 @@ bool draw_outline(const Side& side, Facet& facet) noexcept {
   return facet.count >= 3;
 }
 
-bool has_three(std::uint32_t bits) noexcept {
-  bits &= bits - 1;
-  return (bits & (bits - 1)) != 0;
+bool have_three_in_common(const Set& a, const Set& b) noexcept {
+  std::uint32_t count = 0;
+  for (std::uint32_t k = 0; k < kMostCarrying / 32; ++k) {
+    for (std::uint32_t common = a.words[k] & b.words[k]; common != 0; common &= common - 1) {
+      if (++count == 3) return true;
+    }
+  }
+  return false;
 }
 
-/// Enters the face to the right of the way from p to q, unless there is none but walls. Two faces
-/// have no more than an edge in common: with more they are one, hardly bent.
+/// Enters the face to the right of the way from one vertex to another, unless there is none but
+/// walls. Two faces have no more than an edge in common: with more they are one, hardly bent.
 void enter_facet(Side& side, std::uint32_t from, std::uint32_t to) noexcept {
+  const Turn turn = turn_about(side, from, to);
+  if (!turn.found) return;
+  for (std::uint32_t i = 0; i < side.facet_count; ++i) {
+    const Set& known = side.facets[i].members;
+    if (known.has(from) && known.has(to) && known.has(turn.third)) return;
+  }
   Facet& facet = side.facets[side.facet_count];
-  if (!find_facet(side, from, to, facet)) return;
+  const Corner& p = side.vertices.at[from];
+  facet.slope_x = turn.slope_x;
+  facet.slope_y = turn.slope_y;
+  facet.at_0 = p.height - facet.slope_x * p.x - facet.slope_y * p.y;
+  gather_members(side, facet);
   for (std::uint32_t i = 0; i < side.facet_count; ++i) {
     Facet& known = side.facets[i];
-    if (!has_three(known.members & facet.members)) continue;
-    if ((facet.members & ~known.members) == 0) return;
-    known.members |= facet.members;
+    if (!have_three_in_common(known.members, facet.members)) continue;
+    known.members.add(facet.members);
     static_cast<void>(draw_outline(side, known));
     return;
   }
@@ -196,7 +234,7 @@ bool find_edge(const Side& side, double reach, Edge& out) noexcept {
   for (std::uint32_t i = 0; i < side.facet_count; ++i) {
     const Facet& facet = side.facets[i];
     for (std::uint32_t k = 0; k < facet.count; ++k) {
-      if ((facet.known_beyond >> k & 1u) != 0) continue;
+      if (facet.known_beyond.has(k)) continue;
       const std::uint32_t from = facet.outline[k];
       const std::uint32_t to = facet.outline[k + 1 < facet.count ? k + 1 : 0];
       const double from_height = side.vertices.at[from].height;
@@ -208,6 +246,15 @@ bool find_edge(const Side& side, double reach, Edge& out) noexcept {
   return out.height < reach;
 }
 
+/// Is the face beyond it known?
+bool is_shared(const Side& side, const Edge& edge) noexcept {
+  for (std::uint32_t i = 0; i < side.facet_count; ++i) {
+    const Set& members = side.facets[i].members;
+    if (i != edge.facet && members.has(edge.from) && members.has(edge.to)) return true;
+  }
+  return false;
+}
+
 /// Faces that come below the reach, the lowest first, from edge to edge. Up to how high all are
 /// there.
 double find_facets(Side& side, std::uint32_t gentlest, double reach) noexcept {
@@ -216,9 +263,13 @@ double find_facets(Side& side, std::uint32_t gentlest, double reach) noexcept {
   enter_facet(side, gentlest, 0);
   Edge edge;
   while (find_edge(side, reach, edge)) {
-    if (side.facet_count == kMostFacets) return edge.height;
-    side.facets[edge.facet].known_beyond |= 1u << edge.corner;
+    side.facets[edge.facet].known_beyond.add(edge.corner);
+    if (is_shared(side, edge)) continue;
     enter_facet(side, edge.from, edge.to);
+    if (side.facet_count > kMostFacets) {
+      --side.facet_count;
+      return edge.height;
+    }
   }
   return reach;
 }
@@ -298,6 +349,7 @@ PressureCentre centre_of_pressure(const HullPair& pair, Vec3d normal, double rea
   const double flat_b = flatness(of_b);
   if (!(flat_b > 0)) return {};
 
+  const double all = reach;
   reach = find_facets(scratch.a, of_a.vertex, reach);
   reach = find_facets(scratch.b, of_b.vertex, reach);
   Pressure pressure;
@@ -308,7 +360,9 @@ PressureCentre centre_of_pressure(const HullPair& pair, Vec3d normal, double rea
   if (!(pressure.all > std::numeric_limits<double>::min())) return {};
   const double across_u = pressure.moment_x / pressure.all;
   const double across_v = pressure.moment_y / pressure.all;
-  return {middle + across_u * u + across_v * v, flat_a < flat_b ? flat_a : flat_b};
+  const double flat = flat_a < flat_b ? flat_a : flat_b;
+  const double looked_at = reach / (kEnough * all);
+  return {middle + across_u * u + across_v * v, looked_at < 1 ? looked_at * flat : flat};
 }
 
 }  // namespace palpate::convex

@@ -2,17 +2,18 @@
 // Where two hulls that meet at their faces carry each other.
 #pragma once
 
+#include <cstdint>
+
 #include "rt_core/convex/minkowski.hpp"
-#include "rt_core/image/format.hpp"
 
 namespace palpate::convex {
 
 /// Hulls of more vertices have small faces: no centre is sought.
-inline constexpr std::uint32_t kMostCarrying = image::kAdjacencyAbove;
+inline constexpr std::uint32_t kMostCarrying = 128;
 /// Faces of a hull that carry, at most: where more come within reach, it is taken to end there.
 inline constexpr std::uint32_t kMostFacets = 16;
 
-/// Working memory of one query at a time, about 8 KB; needs no initialisation.
+/// Working memory of one query at a time, about 25 KB; needs no initialisation.
 struct PressureScratch {
   /// Seen along the normal, from the middle.
   struct Corner {
@@ -29,19 +30,32 @@ struct PressureScratch {
       if (count < kMost) at[count++] = c;
     }
   };
+  /// Some of a hull's vertices, or of a face's edges, each from a corner to the next.
+  struct Set {
+    std::uint32_t words[kMostCarrying / 32];
+
+    void clear() noexcept { *this = {}; }
+    void add(const Set& other) noexcept {
+      for (std::uint32_t k = 0; k < kMostCarrying / 32; ++k) words[k] |= other.words[k];
+    }
+    void add(std::uint32_t i) noexcept { words[i / 32] |= 1u << i % 32; }
+    [[nodiscard]] bool has(std::uint32_t i) const noexcept {
+      return (words[i / 32] >> i % 32 & 1u) != 0;
+    }
+  };
   /// A face, with all vertices in its plane.
   struct Facet {
     double slope_x, slope_y, at_0;  ///< its height
-    std::uint32_t members;          ///< bits of vertices
-    std::uint32_t count;            ///< of its corners
-    std::uint32_t known_beyond;     ///< bits of edges, each from a corner to the next
+    Set members;
+    Set known_beyond;     ///< edges
+    std::uint32_t count;  ///< of its corners
     /// Corners, counter-clockwise; one more while it is drawn.
     std::uint8_t outline[kMostCarrying + 1];
   };
   /// A hull as the other one sees it.
   struct Side {
-    Corners<kMostCarrying> vertices;
-    Facet facets[kMostFacets];
+    Corners<kMostCarrying> vertices;  ///< that faces which carry can have; the lowest first
+    Facet facets[kMostFacets + 1];    ///< one more tells that there are
     std::uint32_t facet_count;
   };
   using Polygon = Corners<2 * kMostCarrying + 2>;
@@ -52,11 +66,12 @@ struct PressureScratch {
 
 /// In the coordinates of a.
 struct PressureCentre {
-  Vec3d at{};        ///< beside the middle of the closest points, across the normal
-  double share = 0;  ///< how far the force acts there and not at the closest points: 0 where hulls
-                     ///< have more than kMostCarrying vertices or nothing is left; less than 1
-                     ///< where from its lowest vertex a hull rises by 1/16 and more everywhere, 0
-                     ///< from 1/8 on: the centre is then no farther off than a few times the reach
+  Vec3d at{};  ///< beside the middle of the closest points, across the normal
+  /// How far the force acts there and not at the closest points: 0 where hulls have more than
+  /// kMostCarrying vertices or nothing is left; less than 1 where from its lowest vertex a hull
+  /// rises by 1/25 and more everywhere, 0 from 1/10 on (the closest points are as good), and less
+  /// where more than kMostFacets faces meet within a fiftieth of the reach.
+  double share = 0;
 };
 
 /// The centre of pressure of an elastic foundation between two hulls: of what is left of `reach`

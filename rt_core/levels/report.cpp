@@ -27,11 +27,14 @@ Vec3d mixed(double share, Vec3d own, Vec3d other) noexcept {
 /// Radius from which pieces are wide, in deltas: within smaller ones a contact's place is as good
 /// as another.
 constexpr double kWide = 8;
+/// Simplified pieces of more vertices are round, and their faces not those of the surface.
+constexpr std::uint32_t kMostSimplified = 32;
 
 /// And its hull is surface wherever it is met.
 bool is_wide(const image::Piece& piece, double scale, double delta) noexcept {
   return scale * static_cast<double>(piece.radius) >= kWide * delta &&
-         !has(piece, image::PieceFlag::back_open);
+         !has(piece, image::PieceFlag::back_open) &&
+         (!is_simplified(piece) || piece.hull_vertices <= kMostSimplified);
 }
 
 /// Where the force of a node's contact acts, in the world.

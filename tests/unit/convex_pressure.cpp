@@ -224,6 +224,30 @@ TEST(CentreOfPressure, moves_without_leaps_as_hulls_rock_and_slide) {
   }
 }
 
+TEST(CentreOfPressure, of_a_cylinder_moves_without_leaps_as_it_rolls_and_rocks) {
+  constexpr double kReach = 0.006;
+  const Shape a = prism(48, 0.08, 0.2);
+  const Shape b = box({0.5, 0.5, 0.1});
+  const Mat3d lying = rotation(about({0, 1, 0}, std::numbers::pi / 2));  // along x
+  const auto largest_move = [&](double rocked, int steps) {
+    Vec3d before{};
+    double largest = 0;
+    for (int i = 0; i <= steps; ++i) {
+      const double s = static_cast<double>(i) / steps;
+      const Mat3d rolled = rotation(about({1, 0, 0}, s)) * lying;
+      Placed placed{
+          a.hull(), b.hull(), rotation(about({0, 1, 0}, rocked * (s - 0.5))) * rolled, {}};
+      const Vec3d now = centre(placed, 0.001, kReach);
+      if (i > 0) largest = std::max(largest, across_distance(now, before));
+      before = now;
+    }
+    return largest;
+  };
+  EXPECT_LT(largest_move(0, 4000), 1e-4);
+  EXPECT_LT(largest_move(0.1, 4000), 1e-3);
+  EXPECT_LT(largest_move(0.1, 8000), 0.6 * largest_move(0.1, 4000));
+}
+
 TEST(CentreOfPressure, moves_without_leaps_where_more_faces_come_within_reach_than_are_looked_at) {
   Random random(4);
   constexpr int kSteps = 8000;
