@@ -262,16 +262,17 @@ double find_facets(Side& side, std::uint32_t gentlest, double reach) noexcept {
   enter_facet(side, 0, gentlest);
   enter_facet(side, gentlest, 0);
   Edge edge;
-  while (find_edge(side, reach, edge)) {
+  for (std::uint32_t turn = 0; turn < kMostEdges; ++turn) {
+    if (!find_edge(side, reach, edge)) return reach;
     side.facets[edge.facet].known_beyond.add(edge.corner);
     if (is_shared(side, edge)) continue;
     enter_facet(side, edge.from, edge.to);
     if (side.facet_count > kMostFacets) {
       --side.facet_count;
-      return edge.height;
+      break;
     }
   }
-  return reach;
+  return edge.height;
 }
 
 /// Keeps what is on the side of a line where on_side() is not negative.

@@ -12,6 +12,8 @@ namespace palpate::convex {
 inline constexpr std::uint32_t kMostCarrying = 128;
 /// Faces of a hull that carry, at most: where more come within reach, it is taken to end there.
 inline constexpr std::uint32_t kMostFacets = 16;
+/// Edges of those that are looked beyond; likewise.
+inline constexpr std::uint32_t kMostEdges = 256;
 
 /// Working memory of one query at a time, about 25 KB; needs no initialisation.
 struct PressureScratch {
@@ -87,7 +89,8 @@ struct PressureCentre {
 /// @param normal  unit, from b to a, in the coordinates of a
 /// @param reach   how much farther apart, along the normal, the hulls would carry no more
 /// @param middle  of the closest points, in the coordinates of a
-/// Cost: some vertices * facets of either, and facets of one * facets of the other. Real-time safe.
+/// Cost: at most kMostEdges times the vertices of either hull, and kMostFacets squared pairs of
+/// faces; a few microseconds for boxes and cylinders. Real-time safe.
 [[nodiscard]] PressureCentre centre_of_pressure(const HullPair& pair, Vec3d normal, double reach,
                                                 Vec3d middle, PressureScratch& scratch) noexcept;
 
