@@ -128,6 +128,35 @@ TEST_P(LevelsScene, box_that_rocks_on_a_plane_is_set_back) {
   }
 }
 
+// A face that lies on a face is nearest at one edge or the other. Where the force acts is told by
+// the torque.
+TEST_P(LevelsScene, place_of_the_force_does_not_leap_as_a_body_rocks_on_a_plane) {
+  constexpr double kGap_m = 0.1e-3;
+  constexpr int kTicks = 2000;
+  const BakedBody plate = body(box(0.05, 0.05, 0.01));
+  for (const auto& [name, mesh] : {std::pair{"cube", box(0.01, 0.01, 0.01)},
+                                   std::pair{"cylinder", cylinder(48, 0.008, 0.02)}}) {
+    const BakedBody rocked = body(mesh);
+    load({&rocked, &plate});
+    double largest_m = 0;
+    Vec3d before{};
+    for (int i = 0; i <= kTicks; ++i) {
+      const double s = static_cast<double>(i) / kTicks;
+      const Quat leaning = turn({0.03 * (s - 0.5), 0.2 * (s - 0.5), 0.5 * s});
+      double low_m = 0;
+      for (const bake::Point& p : mesh.points)
+        low_m = std::min(low_m, (rotation(leaning) * Vec3d{p[0], p[1], p[2]}).z);
+      const TickResult r = at({{0, 0, 0.01 + kGap_m - low_m}, leaning});
+      const Vec3d place =
+          (1 / r.wrench.force_N.z) * Vec3d{-r.wrench.torque_Nm.y, r.wrench.torque_Nm.x, 0};
+      if (i > 0) largest_m = std::max(largest_m, norm(place - before));
+      before = place;
+    }
+    EXPECT_LT(largest_m, 0.5e-3) << name;
+    RecordProperty(std::string(name) + "_mm", std::to_string(1e3 * largest_m));
+  }
+}
+
 TEST_P(AnalyticScene, box_pressed_flat_through_a_virtual_tool_comes_to_rest) {
   constexpr double kHalf_m = 0.01, kPeriod_s = 1e-3;
   const BakedBody a = body(box(kHalf_m, kHalf_m, kHalf_m)), b = body(box(0.05, 0.05, 0.01));

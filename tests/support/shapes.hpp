@@ -99,6 +99,27 @@ inline Mesh box(double x, double y, double z) {
   return m;
 }
 
+/// Along x, closed.
+inline Mesh cylinder(std::uint32_t sides, double radius, double half_length) {
+  Mesh m;
+  for (const double x : {-half_length, half_length}) {
+    for (std::uint32_t k = 0; k < sides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / sides;
+      m.points.push_back({x, radius * std::cos(angle), radius * std::sin(angle)});
+    }
+  }
+  for (std::uint32_t k = 0; k < sides; ++k) {
+    const std::uint32_t next = (k + 1) % sides;
+    m.faces.push_back({k, next, sides + next});
+    m.faces.push_back({k, sides + next, sides + k});
+  }
+  for (std::uint32_t k = 1; k + 1 < sides; ++k) {
+    m.faces.push_back({0, k + 1, k});
+    m.faces.push_back({sides, sides + k, sides + k + 1});
+  }
+  return m;
+}
+
 inline void append(Mesh& to, const Mesh& from, double dx, double dy, double dz) {
   const auto base = static_cast<std::uint32_t>(to.points.size());
   for (const bake::Point& p : from.points) to.points.push_back({p[0] + dx, p[1] + dy, p[2] + dz});
