@@ -113,6 +113,7 @@ TEST(CInterface, gives_the_same_bits_as_the_engine) {
       ASSERT_EQ(palpate_get_contact(c_engine, k, &contact), PALPATE_OK);
       EXPECT_EQ(contact.distance_m, r.contacts[k].distance_m);
       EXPECT_EQ(contact.normal[2], r.contacts[k].normal.z);
+      EXPECT_EQ(contact.centre_m[1], r.contacts[k].centre_m.y);
       EXPECT_EQ(contact.piece_a, r.contacts[k].piece_a);
     }
     palpate_contact none;
