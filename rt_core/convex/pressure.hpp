@@ -76,7 +76,8 @@ struct PressureCentre {
   double share = 0;
 };
 
-/// The centre of pressure of an elastic foundation between two hulls: of what is left of `reach`
+/// The centre of pressure of an elastic foundation (Winkler's: Johnson, Contact Mechanics, 1985,
+/// Sec. 4.3) between two hulls: of what is left of `reach`
 /// between their faces, seen along the normal, the mean place weighted by how much is left there.
 ///
 /// A pair of closest points says where a face lies on a face no better than anywhere on it, and
@@ -86,6 +87,8 @@ struct PressureCentre {
 /// are turned, I the second moment of the common part per area. Continuous in the poses, the normal
 /// and the reach. Faces that rise by 1/4 to 1/2 and more do not carry: what is within reach of a
 /// wall is narrow.
+/// Lengths are in the unit of the hulls' scales, which are of the order of 1: vertices within 1e-6
+/// of a plane are in it.
 /// @param normal  unit, from b to a, in the coordinates of a
 /// @param reach   how much farther apart, along the normal, the hulls would carry no more
 /// @param middle  of the closest points, in the coordinates of a

@@ -81,12 +81,17 @@ class Group {
 
   void mix(const LeafContact& of_parent, double share) noexcept {
     bool any = false;
+    const Vec3d centre_m =
+        of_parent.found ? work_.report.centre_m(pair_, parent_, of_parent) : Vec3d{};
     for (std::uint32_t c = parent_.first_child; c != kNone; c = work_.tree[c].next_sibling) {
       const Node& child = work_.tree[c];
       if (child.report == kNone) continue;
       any = true;
-      const LeafContact other = of_parent.found ? of_parent : without_force(child);
-      work_.report.blend(pair_, child, of_parent.found ? parent_ : child, other, share);
+      if (of_parent.found) {
+        work_.report.blend(pair_, child, of_parent, centre_m, share);
+      } else {
+        work_.report.fade(pair_, child, share);
+      }
     }
     if (any || !of_parent.found) return;
     LeafContact fading = of_parent;
@@ -95,13 +100,6 @@ class Group {
       static_cast<void>(work_.report.add(pair_, parent_, fading));
       parent_.report = work_.memory.ticks;  // still a mark: nothing mixes with a parent's contact
     }
-  }
-
-  /// The child's own points and normal, at delta.
-  LeafContact without_force(const Node& child) const noexcept {
-    LeafContact contact = remeasured(pair_, child);
-    contact.distance = pair_.delta;
-    return contact;
   }
 
   Work& work_;

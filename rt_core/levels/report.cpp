@@ -37,23 +37,6 @@ bool is_wide(const image::Piece& piece, double scale, double delta) noexcept {
          (!is_simplified(piece) || piece.hull_vertices <= kMostSimplified);
 }
 
-/// Where the force of a node's contact acts, in the world.
-Vec3d centre_m_of(const PairState& pair, const Node& node, const LeafContact& contact,
-                  convex::PressureScratch& scratch) noexcept {
-  const Vec3d middle = 0.5 * (contact.point_a + contact.point_b);
-  const bool dived = has_dived(node);
-  const image::Piece& a = pair.image_a->pieces[dived ? node.leaf_a : node.piece_a];
-  const image::Piece& b = pair.image_b->pieces[dived ? node.leaf_b : node.piece_b];
-  convex::PressureCentre centre;
-  if (is_wide(a, pair.scale_a, pair.delta) && is_wide(b, pair.scale_b, pair.delta)) {
-    const convex::Hull hull_a = hull_of(*pair.image_a, a, pair.scale_a);
-    const convex::Hull hull_b = hull_of(*pair.image_b, b, pair.scale_b);
-    centre = convex::centre_of_pressure({hull_a, hull_b, pair.b_in_a}, contact.normal,
-                                        pair.delta - contact.distance, middle, scratch);
-  }
-  return in_world(pair, middle + centre.share * (centre.at - middle));
-}
-
 }  // namespace
 
 void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
@@ -107,12 +90,28 @@ bool Report::add(const PairState& pair, Node& node, const LeafContact& contact) 
   return true;
 }
 
+Vec3d Report::centre_m(const PairState& pair, const Node& node,
+                       const LeafContact& contact) const noexcept {
+  const Vec3d middle = 0.5 * (contact.point_a + contact.point_b);
+  const bool dived = has_dived(node);
+  const image::Piece& a = pair.image_a->pieces[dived ? node.leaf_a : node.piece_a];
+  const image::Piece& b = pair.image_b->pieces[dived ? node.leaf_b : node.piece_b];
+  convex::PressureCentre centre;
+  if (is_wide(a, pair.scale_a, pair.delta) && is_wide(b, pair.scale_b, pair.delta)) {
+    const convex::Hull hull_a = hull_of(*pair.image_a, a, pair.scale_a);
+    const convex::Hull hull_b = hull_of(*pair.image_b, b, pair.scale_b);
+    centre = convex::centre_of_pressure({hull_a, hull_b, pair.b_in_a}, contact.normal,
+                                        pair.delta - contact.distance, middle, scratch_);
+  }
+  return in_world(pair, middle + centre.share * (centre.at - middle));
+}
+
 void Report::replace(const PairState& pair, const Node& node, const LeafContact& contact) noexcept {
   note_upper(pair, node, contact);
   Contact& out = contacts_[node.report];
   out.point_a_m = in_world(pair, contact.point_a);
   out.point_b_m = in_world(pair, contact.point_b);
-  out.centre_m = centre_m_of(pair, node, contact, scratch_);
+  out.centre_m = centre_m(pair, node, contact);
   out.normal = pair.rotation_a * contact.normal;
   out.distance_m = contact.distance * pair.unit_m;
   out.weight = 0;
@@ -123,21 +122,29 @@ void Report::replace(const PairState& pair, const Node& node, const LeafContact&
   out.level_b = piece_b(pair, node).level;
 }
 
-void Report::blend(const PairState& pair, const Node& node, const Node& other_node,
-                   const LeafContact& other, double share) noexcept {
-  Contact& c = contacts_[node.report];
+void Report::mix_distance(const PairState& pair, const Node& node, double other,
+                          double share) noexcept {
   const double lower_m = certain_now(pair, node) * pair.unit_m;  // what was certain before mixing
   if (lower_m < mixed_lower_m_) mixed_lower_m_ = lower_m;
+  Contact& c = contacts_[node.report];
+  c.distance_m = share * c.distance_m + (1 - share) * other * pair.unit_m;
+  if (c.distance_m >= pair.delta * pair.unit_m) c.distance_m = kInfinity;
+}
+
+void Report::blend(const PairState& pair, const Node& node, const LeafContact& other,
+                   Vec3d other_centre_m, double share) noexcept {
+  Contact& c = contacts_[node.report];
   c.point_a_m = mixed(share, c.point_a_m, in_world(pair, other.point_a));
   c.point_b_m = mixed(share, c.point_b_m, in_world(pair, other.point_b));
-  if (&other_node != &node) {
-    c.centre_m = mixed(share, c.centre_m, centre_m_of(pair, other_node, other, scratch_));
-  }
+  c.centre_m = mixed(share, c.centre_m, other_centre_m);
   const Vec3d normal = mixed(share, c.normal, pair.rotation_a * other.normal);
   const double length = norm(normal);
   if (length > 0) c.normal = (1 / length) * normal;
-  c.distance_m = share * c.distance_m + (1 - share) * other.distance * pair.unit_m;
-  if (c.distance_m >= pair.delta * pair.unit_m) c.distance_m = kInfinity;
+  mix_distance(pair, node, other.distance, share);
+}
+
+void Report::fade(const PairState& pair, const Node& node, double share) noexcept {
+  mix_distance(pair, node, pair.delta, share);
 }
 
 void Report::finish(QueryResult& result) noexcept {

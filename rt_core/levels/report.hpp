@@ -53,10 +53,18 @@ class Report {
   /// Puts another one in the place of what was added for a node.
   void replace(const PairState& pair, const Node& node, const LeafContact& contact) noexcept;
 
-  /// Mixes a node's contact with one of another node (or its own): `share` of its own, the rest of
-  /// `other`. At delta or more it is dropped.
-  void blend(const PairState& pair, const Node& node, const Node& other_node,
-             const LeafContact& other, double share) noexcept;
+  /// Where the force of a node's contact acts, in the world. O(1) (convex/pressure.hpp)
+  [[nodiscard]] Vec3d centre_m(const PairState& pair, const Node& node,
+                               const LeafContact& contact) const noexcept;
+
+  /// Mixes a node's contact with another one: `share` of its own, the rest of `other`. At delta or
+  /// more it is dropped.
+  /// @param other_centre_m  centre_m() of the other one
+  void blend(const PairState& pair, const Node& node, const LeafContact& other,
+             Vec3d other_centre_m, double share) noexcept;
+
+  /// Leaves `share` of a node's contact: the rest counts as delta.
+  void fade(const PairState& pair, const Node& node, double share) noexcept;
 
   /// Closes gaps; fills in contacts, min_distance_m and upper_m, lowers unresolved_lower_m to what
   /// was mixed.
@@ -64,6 +72,7 @@ class Report {
 
  private:
   void note_upper(const PairState& pair, const Node& node, const LeafContact& contact) noexcept;
+  void mix_distance(const PairState& pair, const Node& node, double other, double share) noexcept;
 
   std::span<Contact> contacts_;
   convex::PressureScratch& scratch_;

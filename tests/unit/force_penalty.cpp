@@ -80,7 +80,9 @@ Wrench by_definition(const std::vector<Contact>& contacts, const Settings& s) {
   places.begin(s.cluster_radius_m, n);
   std::vector<double> mass(n), part(n), depth(n);
   std::vector<Spot> spot(n);
-  const auto middle = [&](std::size_t i) { return contacts[i].centre_m; };
+  const auto middle = [&](std::size_t i) {
+    return 0.5 * (contacts[i].point_a_m + contacts[i].point_b_m);
+  };
   for (std::size_t i = 0; i < n; ++i) {
     depth[i] = std::max(0.0, s.delta_m - contacts[i].distance_m);
     mass[i] = depth[i] * depth[i] / (s.delta_m * s.delta_m);
@@ -102,9 +104,21 @@ Wrench by_definition(const std::vector<Contact>& contacts, const Settings& s) {
     if (mass[i] == 0) continue;
     const Vec3d f = (s.stiffness_N_per_m * deepest * mass[i] / around) * contacts[i].normal;
     out.force_N += f;
-    out.torque_Nm += cross(middle(i), f);
+    out.torque_Nm += cross(contacts[i].centre_m, f);
   }
   return out;
+}
+
+TEST(Penalty, shares_forces_by_points_and_has_its_torque_about_centres) {
+  Random random{std::mt19937(14)};
+  std::vector<Contact> c = random.contacts(30, 0.02);
+  const Wrench at_points = by_definition(c, kSettings);
+  for (Contact& contact : c) contact.centre_m += random.vector(0.01);
+  const Wrench expected = by_definition(c, kSettings);
+  const Penalty p = feel(c);
+  EXPECT_NEAR(norm(p.wrench.force_N - at_points.force_N), 0, 1e-9);
+  EXPECT_NEAR(norm(p.wrench.torque_Nm - expected.torque_Nm), 0, 1e-9);
+  EXPECT_GT(norm(expected.torque_Nm - at_points.torque_Nm), 1e-5);
 }
 
 TEST(Penalty, no_contact_gives_no_force) {
