@@ -29,14 +29,18 @@ struct Crossing {
 
 /// The overlap of a region whose list is not empty: as deep as the deepest of the pairs of pieces,
 /// about the middle of the curve in which the surfaces cross and in the direction in which it leads
-/// out (CrossingCurve).
+/// out.
 ///
 /// Depths are those of convex pieces of the original surface, as in the levels engine; they go to
 /// zero as the pieces part. The directions that these are least in are of no use: a piece of a
 /// detailed surface is often thinner than the overlap is deep, so that its other side is nearer,
 /// and where two ways are equally long the least turns at once. It is taken only where the normals
 /// along the curve cancel, as of a blade that has passed through a wall, or where both surfaces may
-/// have been met from their backs. Cost: one penetration query a pair.
+/// have been met from their backs. Else each pair of pieces is led out along the normals of a or of
+/// b along their part of the curve, nearly all along those by which the pieces part sooner, and the
+/// region in the mean direction: so a corner or a side in a face is pushed along the face's normal
+/// from the beginning on, as it was before it crossed, however large the triangles are.
+/// Cost: one penetration query and four support points a pair.
 Crossing overlap(const levels::PairState& pair, CrossingScratch& scratch) noexcept;
 
 }  // namespace palpate::regions

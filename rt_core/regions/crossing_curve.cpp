@@ -17,7 +17,6 @@ struct Triangle {
 struct Cut {
   Vec3d begin{};
   Vec3d end{};
-  double depth = 0;  // of the lowest corner below the plane
   bool found = false;
 };
 
@@ -26,7 +25,6 @@ struct Segment {
   Vec3d begin{};
   Vec3d end{};
   double length = 0;  // 0: nothing
-  double share_b = 0.5;
 };
 
 Triangle triangle(Vec3d p, Vec3d q, Vec3d r) noexcept { return {{p, q, r}, cross(q - p, r - p)}; }
@@ -45,19 +43,7 @@ Cut cut(const Triangle& t, const Triangle& plane, Vec3d along) noexcept {
   }
   if (count != 2) return {};
   const bool forward = dot(along, ends[1] - ends[0]) >= 0;
-  double lowest = above[0] < above[1] ? above[0] : above[1];
-  lowest = above[2] < lowest ? above[2] : lowest;
-  return {ends[forward ? 0 : 1], ends[forward ? 1 : 0], -lowest / norm(plane.normal), true};
-}
-
-/// Nearly all to the way along which the triangles part sooner. Below both planes lie corners, so
-/// that the depths are not both zero.
-double share_of_b(double depth_of_a, double depth_of_b) noexcept {
-  const double far = depth_of_a / (depth_of_a + depth_of_b);
-  const double near = 1 - far;
-  const double far2 = far * far;
-  const double near2 = near * near;
-  return near2 / (near2 + far2);
+  return {ends[forward ? 0 : 1], ends[forward ? 1 : 0], true};
 }
 
 Segment common(const Triangle& a, const Triangle& b) noexcept {
@@ -74,7 +60,6 @@ Segment common(const Triangle& a, const Triangle& b) noexcept {
   const double length = dot(along, out.end - out.begin);
   if (!(length > 0)) return {};
   out.length = length;
-  out.share_b = share_of_b(of_a.depth, of_b.depth);
   return out;
 }
 
@@ -97,12 +82,8 @@ void add_segment(const levels::PairState& pair, std::uint32_t triangle_a, std::u
   if (!(s.length > 0)) return;
   curve.length += s.length;
   curve.moment += s.length * (origin + 0.5 * (s.begin + s.end));
-  const bool a_counts = is_closed(*pair.image_a, of_a);
-  const bool b_counts = is_closed(*pair.image_b, of_b);
-  const double share_b = a_counts ? s.share_b : 1;
-  const double share_a = b_counts ? 1 - s.share_b : 1;
-  if (b_counts) curve.out += (s.length * share_b / norm(b.normal)) * b.normal;
-  if (a_counts) curve.out += (-s.length * share_a / norm(a.normal)) * a.normal;
+  if (is_closed(*pair.image_a, of_a)) curve.along_a -= (s.length / norm(a.normal)) * a.normal;
+  if (is_closed(*pair.image_b, of_b)) curve.along_b += (s.length / norm(b.normal)) * b.normal;
 }
 
 }  // namespace palpate::regions

@@ -15,11 +15,10 @@ namespace palpate::regions {
 struct CrossingCurve {
   double length = 0;
   Vec3d moment{};  ///< length times middle
-  /// Length times a mean of b's outward normal and a's inward one, nearly all to the one along
-  /// which the two triangles part sooner: so a corner or a side in a face is pushed along the
-  /// face's normal from the beginning on, as it was before it crossed. A triangle that may have
-  /// been met from its back (is_closed()) does not count.
-  Vec3d out{};
+  /// The two ways out that the surfaces tell: length times a's inward normal, and b's outward one.
+  /// A triangle that may have been met from its back (is_closed()) does not count.
+  Vec3d along_a{};
+  Vec3d along_b{};
 };
 
 /// Adds the segment of two triangles (indices into region_triangles). Nothing where they do not

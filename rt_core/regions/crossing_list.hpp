@@ -10,16 +10,21 @@ namespace palpate::regions {
 
 inline constexpr std::uint32_t kMaxCrossings = 16;
 
-/// Pairs of pieces (level 0) whose triangles cross, each once, and the curve in which they do.
-struct CrossingList {
-  std::uint32_t count = 0;
-  std::uint32_t piece_a[kMaxCrossings] = {};
-  std::uint32_t piece_b[kMaxCrossings] = {};
+/// Two pieces (level 0) whose triangles cross, and the curve in which they do.
+struct CrossingPieces {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
   CrossingCurve curve;
 };
 
-/// Adds two triangles that cross. Pieces for which there is no room are left out, their segment is
-/// not. O(kMaxCrossings)
+/// Each pair of pieces once.
+struct CrossingList {
+  std::uint32_t count = 0;
+  CrossingPieces pieces[kMaxCrossings];
+  CrossingCurve rest;  ///< of pieces for which there was no room
+};
+
+/// Adds two triangles that cross. O(kMaxCrossings)
 void note_crossing(const levels::PairState& pair, std::uint32_t triangle_a,
                    std::uint32_t triangle_b, CrossingList& list) noexcept;
 
