@@ -157,6 +157,23 @@ TEST_P(LevelsScene, place_of_the_force_does_not_leap_as_a_body_rocks_on_a_plane)
   }
 }
 
+/// How large the triangles are says nothing about which way leads out.
+TEST_P(AnalyticScene, leaning_box_of_many_triangles_is_pushed_out_of_a_plane_along_its_normal) {
+  constexpr double kHalf_m = 0.01, kGap_m = -0.3e-3;
+  constexpr int kTicks = 200;
+  const bake::Mesh cube = quartered(box(kHalf_m, kHalf_m, kHalf_m), 3);
+  const BakedBody a = body(cube), b = body(quartered(box(0.05, 0.05, 0.01), 5));
+  load({&a, &b});
+  for (int i = 0; i <= kTicks; ++i) {
+    const double lean = 0.4 * i / kTicks - 0.2;
+    const Quat leaning = turn({0.29 * lean, 0.96 * lean, 0});
+    double low_m = 0;
+    for (const bake::Point& p : cube.points)
+      low_m = std::min(low_m, (rotation(leaning) * Vec3d{p[0], p[1], p[2]}).z);
+    expect_force(at({{0.001, 0.002, 0.01 + kGap_m - low_m}, leaning}), {0, 0, spring_N(kGap_m)});
+  }
+}
+
 TEST_P(AnalyticScene, box_pressed_flat_through_a_virtual_tool_comes_to_rest) {
   constexpr double kHalf_m = 0.01, kPeriod_s = 1e-3;
   const BakedBody a = body(box(kHalf_m, kHalf_m, kHalf_m)), b = body(box(0.05, 0.05, 0.01));

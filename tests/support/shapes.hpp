@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "host_bake/mesh/mesh.hpp"
 
@@ -97,6 +99,25 @@ inline Mesh box(double x, double y, double z) {
   m.faces = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
              {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   return m;
+}
+
+/// Every triangle cut in four, across the middles of its edges: the same surface.
+inline Mesh quartered(const Mesh& coarse, int times) {
+  if (times == 0) return coarse;
+  Mesh fine{coarse.points, {}};
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+  const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+    const auto [at, added] = middles.try_emplace(std::minmax(a, b), fine.points.size());
+    const bake::Point &p = coarse.points[a], &q = coarse.points[b];
+    if (added)
+      fine.points.push_back({0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.5 * (p[2] + q[2])});
+    return at->second;
+  };
+  for (const auto& [a, b, c] : coarse.faces) {
+    const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    fine.faces.insert(fine.faces.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+  }
+  return quartered(fine, times - 1);
 }
 
 /// Along x, closed.
