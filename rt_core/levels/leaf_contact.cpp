@@ -14,6 +14,9 @@ using image::Triangle;
 
 /// Sums of directions that are shorter point nowhere.
 constexpr double kLeastDirection = 1e-3;
+/// Original pieces are felt whole up to a right angle beyond their normals, and not at all where
+/// the cosine is less by one over this and more.
+constexpr double kBehind = 2;
 
 Vec3d position(const image::Vertex& v) noexcept {
   return {static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),
@@ -183,28 +186,30 @@ Vec3d patch_normal(const Piece& piece) noexcept {
           static_cast<double>(piece.patch_normal[2])};
 }
 
-/// How well a patch may be met along a direction that leads out of it: 1 within its cone of
-/// normals, 0 where the cosine is less by 1. Vertices and edges have normals beyond those of the
-/// triangles. `normal` is the piece's, in the coordinates of `outward`.
-double likeness(const Piece& piece, Vec3d normal, Vec3d outward) noexcept {
+/// How squarely a patch may be met along a direction that leads out of it: 1 and more within its
+/// cone of normals, less by as much as the cosine falls beyond. `normal` is the piece's, in the
+/// coordinates of `outward`.
+double squareness(const Piece& piece, Vec3d normal, Vec3d outward) noexcept {
   const double length = norm(normal);
   if (!(length > 0)) return 1;
-  const double within = 1 + dot(outward, normal) / length - static_cast<double>(piece.patch_cosine);
-  return within <= 0 ? 0 : (within >= 1 ? 1 : within * within * (3 - 2 * within));
+  return 1 + dot(outward, normal) / length - static_cast<double>(piece.patch_cosine);
 }
 
-/// How well two patches may meet along a direction from b to a.
-double likeness(const PairState& pair, const Piece& a, const Piece& b, Vec3d direction) noexcept {
-  const double of_a = likeness(a, patch_normal(a), -direction);
-  const double of_b = likeness(b, pair.b_in_a.rotation * patch_normal(b), direction);
+/// Of two patches that meet along a direction from b to a, the less square.
+double squareness(const PairState& pair, const Piece& a, const Piece& b, Vec3d direction) noexcept {
+  const double of_a = squareness(a, patch_normal(a), -direction);
+  const double of_b = squareness(b, pair.b_in_a.rotation * patch_normal(b), direction);
   return of_a < of_b ? of_a : of_b;
 }
+
+/// From 0 to 1, beyond them constant.
+double smooth_step(double x) noexcept { return x <= 0 ? 0 : (x >= 1 ? 1 : x * x * (3 - 2 * x)); }
 
 /// The hulls are parted soonest through the back of the thinner one where they overlap by more than
 /// half of it, and sideways where they hardly meet: no way out of the solid. The less the patches
 /// look like it, the more they are parted the way they face.
 Vec3d direction_of(const PairState& pair, const Piece& a, const Piece& b, Vec3d shortest) noexcept {
-  const double share = likeness(pair, a, b, shortest);
+  const double share = smooth_step(squareness(pair, a, b, shortest));
   const Vec3d facing = pair.b_in_a.rotation * patch_normal(b) - patch_normal(a);
   const Vec3d mixed = share * shortest + (1 - share) * facing;
   const double length = norm(mixed);
@@ -222,12 +227,16 @@ Vec3d way_out(const PairState& pair, const Piece& a, const Piece& b,
   return length > kLeastDirection ? (1 / length) * mixed : shortest;
 }
 
-/// Simplified pieces may have passed through each other where the originals need not, and are then
-/// nearest at their edges, back to back: the less they face each other, the less is felt of them.
+/// Pieces that have passed through each other are nearest back to back: the less they face each
+/// other, the less is felt of them. Simplified ones may have where the originals need not. Original
+/// ones have entered a solid, of which patches far thinner than the overlap is deep show the inner
+/// side; from outside, vertices and edges are met at up to a right angle beyond the normals.
 void fade_behind(const PairState& pair, const Piece& a, const Piece& b, double reach,
                  LeafContact& contact) noexcept {
-  if (!(contact.distance < reach) || (!is_simplified(a) && !is_simplified(b))) return;
-  contact.share = likeness(pair, a, b, contact.normal);
+  if (!(contact.distance < reach)) return;
+  const bool simplified = is_simplified(a) || is_simplified(b);
+  const double square = squareness(pair, a, b, contact.normal);
+  contact.share = smooth_step(simplified ? square : 1 + kBehind * square);
   contact.distance = faded(contact.distance, contact.share, reach);
 }
 
