@@ -78,7 +78,7 @@ struct Scene {
   Coupling coupling = Coupling::direct;            ///< [force]
   double contact_damping_N_s_per_m = 0;            ///< [force]
   double steady_force_N_per_s = 150;               ///< [force], SteadyRates
-  double steady_torque_Nm_per_s = 4;               ///< [force], likewise
+  double steady_torque_Nm_per_s = 3;               ///< [force], likewise
   double max_force_slew_N_per_s = 2000;            ///< [force], of what is sent
   double max_torque_slew_Nm_per_s = 60;            ///< [force], likewise
   double max_power_W = 5;                          ///< [force], given to the hand

@@ -174,6 +174,61 @@ TEST_P(AnalyticScene, leaning_box_of_many_triangles_is_pushed_out_of_a_plane_alo
   }
 }
 
+/// A groove across x, from its polygon's corners on.
+bake::Mesh groove() {
+  constexpr double kHalf_m = 0.03;
+  bake::Mesh m;
+  for (const double y : {-kHalf_m, kHalf_m}) {
+    for (const auto& [x, z] : {std::pair{-0.03, -0.03},
+                               {0.03, -0.03},
+                               {0.03, 0.02},
+                               {0.02, 0.02},
+                               {0.0, 0.0},
+                               {-0.02, 0.02},
+                               {-0.03, 0.02}}) {
+      m.points.push_back({x, y, z});
+    }
+  }
+  for (const bake::Face& f :
+       std::initializer_list<bake::Face>{{0, 1, 4}, {1, 2, 3}, {1, 3, 4}, {0, 4, 5}, {0, 5, 6}}) {
+    m.faces.push_back(f);
+    m.faces.push_back({f[0] + 7, f[2] + 7, f[1] + 7});
+  }
+  for (std::uint32_t i = 0; i < 7; ++i) {
+    const std::uint32_t next = (i + 1) % 7;
+    m.faces.push_back({i, i + 7, next + 7});
+    m.faces.push_back({i, next + 7, next});
+  }
+  return m;
+}
+
+/// Patches of a fine mesh are thin, and what has passed through them is on their inner side. Both
+/// walls are felt all the same.
+TEST_P(AnalyticScene, ball_pressed_into_a_groove_of_many_triangles_is_pushed_out_by_both_walls) {
+  constexpr double kRadius_m = 0.009;
+  const bake::Mesh sphere = ball(24, 32, kRadius_m);
+  const BakedBody a = body(sphere), b = body(quartered(groove(), 3));
+  load({&a, &b});
+  const double s = std::numbers::sqrt2 / 2;
+  for (int i = 0; i <= 60; ++i) {
+    const double overlap_m = 0.3e-3 * i / 60;
+    const Quat turned = turn({0.1 * i, 0.05 * i, 0.02});
+    double low_m[2] = {};  // of the corners, from the ball's middle along either wall's normal
+    for (const bake::Point& p : sphere.points) {
+      const Vec3d q = rotation(turned) * Vec3d{p[0], p[1], p[2]};
+      low_m[0] = std::min(low_m[0], s * (q.x + q.z));
+      low_m[1] = std::min(low_m[1], s * (q.z - q.x));
+    }
+    const double from_m[2] = {-low_m[0] - overlap_m, -low_m[1] - 0.5 * overlap_m};
+    const TickResult r =
+        at({{s * (from_m[0] - from_m[1]), 0.001 * std::sin(0.3 * i), s * (from_m[0] + from_m[1])},
+            turned});
+    const double first_N = spring_N(-overlap_m), second_N = spring_N(-0.5 * overlap_m);
+    const Vec3d expected_N{s * (first_N - second_N), 0, s * (first_N + second_N)};
+    EXPECT_NEAR(norm(r.wrench.force_N - expected_N), 0, 0.05 * norm(expected_N)) << i;
+  }
+}
+
 TEST_P(AnalyticScene, box_pressed_flat_through_a_virtual_tool_comes_to_rest) {
   constexpr double kHalf_m = 0.01, kPeriod_s = 1e-3;
   const BakedBody a = body(box(kHalf_m, kHalf_m, kHalf_m)), b = body(box(0.05, 0.05, 0.01));

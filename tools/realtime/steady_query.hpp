@@ -10,7 +10,7 @@ namespace palpate::realtime {
 /// How fast the wrench may leave its linear model; > 0, infinity: at once.
 struct SteadyRates {
   double force_N_per_s = 150;
-  double torque_Nm_per_s = 4;
+  double torque_Nm_per_s = 3;
 };
 
 /// Another query's answer, followed steadily.
