@@ -237,7 +237,7 @@ void fade_behind(const PairState& pair, const Piece& a, const Piece& b, double r
   const bool simplified = is_simplified(a) || is_simplified(b);
   const double square = squareness(pair, a, b, contact.normal);
   contact.share = smooth_step(simplified ? square : 1 + kBehind * square);
-  contact.distance = faded(contact.distance, contact.share, reach);
+  if (contact.share < 1) contact.distance = faded(contact.distance, contact.share, reach);
 }
 
 LeafContact overlapping(const PairState& pair, const Piece& a, const Piece& b,

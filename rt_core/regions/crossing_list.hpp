@@ -21,7 +21,7 @@ struct CrossingPieces {
 struct CrossingList {
   std::uint32_t count = 0;
   CrossingPieces pieces[kMaxCrossings];
-  CrossingCurve rest;  ///< of pieces for which there was no room
+  CrossingCurve rest;  ///< of pieces for which there was no room: both ways out count alike
 };
 
 /// Adds two triangles that cross. O(kMaxCrossings)

@@ -115,7 +115,7 @@ inline Mesh quartered(const Mesh& coarse, int times) {
   };
   for (const auto& [a, b, c] : coarse.faces) {
     const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-    fine.faces.insert(fine.faces.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+    fine.faces.insert(fine.faces.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
   }
   return quartered(fine, times - 1);
 }

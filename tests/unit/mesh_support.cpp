@@ -7,10 +7,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <sstream>
 
 #include "host_bake/base/error.hpp"
+#include "tests/support/shapes.hpp"
 
 namespace palpate::bake::testing {
 namespace {
@@ -30,21 +30,6 @@ class ScratchFile {
  private:
   std::filesystem::path path_;
 };
-
-std::uint32_t middle_of(Mesh& mesh,
-                        std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>& known,
-                        std::uint32_t a, std::uint32_t b) {
-  const auto [it, fresh] =
-      known.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(mesh.points.size()));
-  if (fresh) {
-    Point p{};
-    for (std::size_t i = 0; i < 3; ++i) p[i] = mesh.points[a][i] + mesh.points[b][i];
-    const double length = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-    for (double& x : p) x /= length;
-    mesh.points.push_back(p);
-  }
-  return it->second;
-}
 
 std::string ply_header(const Mesh& mesh, const std::string& format, const std::string& newline) {
   std::string header;
@@ -78,16 +63,13 @@ Mesh sphere(Point centre, double radius, int subdivisions) {
   mesh.faces = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
                 {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
   for (int i = 0; i < subdivisions; ++i) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
-    std::vector<Face> finer;
-    for (const Face& f : mesh.faces) {
-      const std::uint32_t ab = middle_of(mesh, known, f[0], f[1]);
-      const std::uint32_t bc = middle_of(mesh, known, f[1], f[2]);
-      const std::uint32_t ca = middle_of(mesh, known, f[2], f[0]);
-      finer.insert(finer.end(),
-                   {Face{f[0], ab, ca}, Face{ab, f[1], bc}, Face{ca, bc, f[2]}, Face{ab, bc, ca}});
+    const std::size_t known = mesh.points.size();
+    mesh = test::quartered(mesh, 1);
+    for (std::size_t k = known; k < mesh.points.size(); ++k) {
+      Point& p = mesh.points[k];
+      const double length = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+      for (double& x : p) x /= length;
     }
-    mesh.faces = finer;
   }
   for (Point& p : mesh.points) {
     for (std::size_t i = 0; i < 3; ++i) p[i] = centre[i] + radius * p[i];
