@@ -61,6 +61,7 @@ struct Layout {
   std::span<std::uint32_t> first_state, queue;
   std::span<regions::RegionState> regions;
   std::span<regions::Active> active;
+  std::span<regions::WayOut> ways_out;
   std::span<float> swept;
   std::span<regions::SearchScratch> search;
   std::span<regions::CrossingScratch> crossing;
@@ -95,6 +96,7 @@ void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
   out.regions = arena.array<regions::RegionState>(all);
   out.active = arena.array<regions::Active>(all);
   out.queue = arena.array<std::uint32_t>(all);
+  out.ways_out = arena.array<regions::WayOut>(all);
   out.swept = arena.array<float>(most);
   out.search = arena.array<regions::SearchScratch>(1);
   out.crossing = arena.array<regions::CrossingScratch>(1);
@@ -153,6 +155,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.regions.states = layout.regions;
   e.regions.active = layout.active;
   e.regions.queue = layout.queue;
+  e.regions.ways_out = layout.ways_out;
   e.regions.swept = layout.swept;
   e.regions.search = layout.search.data();
   e.regions.crossing = layout.crossing.data();

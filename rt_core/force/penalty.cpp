@@ -20,7 +20,7 @@ std::span<Felt> gather(std::span<Contact> contacts, std::span<const BodyPair> pa
     Contact& c = contacts[i];
     c.weight = 0;
     const BodyPair& pair = pairs[c.pair];
-    const double depth_m = delta_m - c.distance_m;
+    const double depth_m = c.share * (delta_m - c.distance_m);
     if ((pair.a != tool && pair.b != tool) || !(depth_m > 0)) continue;
     Felt& felt = out[count++];
     felt.point_m = 0.5 * (c.point_a_m + c.point_b_m) - origin_m;
@@ -73,7 +73,7 @@ Penalty penalty(std::span<Contact> contacts, std::span<const BodyPair> pairs, st
     const double depth_m = share * depths.around(f);
     const Vec3d force_N = (settings.stiffness_N_per_m * depth_m) * f.direction;
     Contact& contact = contacts[f.contact];
-    contact.weight = depth_m / f.depth_m;
+    contact.weight = contact.share * depth_m / f.depth_m;
     const Vec3d arm_m = contact.centre_m - tool_pose.position_m;
     out.directions += share;
     out.wrench.force_N += force_N;

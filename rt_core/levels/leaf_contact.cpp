@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "rt_core/geometry/smooth_step.hpp"
 #include "rt_core/levels/rules.hpp"
 
 namespace palpate::levels {
@@ -201,9 +202,6 @@ double squareness(const PairState& pair, const Piece& a, const Piece& b, Vec3d d
   const double of_b = squareness(b, pair.b_in_a.rotation * patch_normal(b), direction);
   return of_a < of_b ? of_a : of_b;
 }
-
-/// From 0 to 1, beyond them constant.
-double smooth_step(double x) noexcept { return x <= 0 ? 0 : (x >= 1 ? 1 : x * x * (3 - 2 * x)); }
 
 /// The hulls are parted soonest through the back of the thinner one where they overlap by more than
 /// half of it, and sideways where they hardly meet: no way out of the solid. The less the patches

@@ -114,6 +114,7 @@ void Report::replace(const PairState& pair, const Node& node, const LeafContact&
   out.centre_m = centre_m(pair, node, contact);
   out.normal = pair.rotation_a * contact.normal;
   out.distance_m = contact.distance * pair.unit_m;
+  out.share = 1;
   out.weight = 0;
   out.pair = node.pair;
   out.piece_a = node.piece_a;

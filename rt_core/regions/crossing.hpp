@@ -10,15 +10,11 @@
 
 namespace palpate::regions {
 
-/// Working memory of one query at a time; needs no initialisation.
-struct CrossingScratch {
-  convex::PenetrationScratch polytope;
-  CrossingList list;
-};
-
 /// In the coordinates of a, lengths in units: point_b - point_a = depth * normal.
 struct Crossing {
   double depth = -1;
+  double way_length = 0;  ///< how far its pieces have to move along the normal until they part; 0
+                          ///< where the curve tells no way
   Vec3d point_a{};
   Vec3d point_b{};
   Vec3d normal{};
@@ -27,9 +23,22 @@ struct Crossing {
   bool exact = true;
 };
 
-/// The overlap of a region whose list is not empty: as deep as the deepest of the pairs of pieces,
-/// about the middle of the curve in which the surfaces cross and in the direction in which it leads
-/// out.
+/// Two pieces that cross, by themselves.
+struct CrossingOfPieces {
+  Crossing overlap;
+  Vec3d way{};  ///< out, as long as their part of the curve says it surely; 0: not told
+};
+
+/// Working memory of one query at a time; needs no initialisation.
+struct CrossingScratch {
+  convex::PenetrationScratch polytope;
+  CrossingList list;
+  CrossingOfPieces of_pieces[kMaxCrossings];
+};
+
+/// The overlap of a region whose list is not empty: as deep as the deepest of the pairs of pieces
+/// that are led out nearly the same way, about the middle of the curve in which the surfaces cross
+/// and in the direction in which it leads out.
 ///
 /// Depths are those of convex pieces of the original surface, as in the levels engine; they go to
 /// zero as the pieces part. The directions that these are least in are of no use: a piece of a
@@ -40,7 +49,7 @@ struct Crossing {
 /// b along their part of the curve, nearly all along those by which the pieces part sooner, and the
 /// region in the mean direction: so a corner or a side in a face is pushed along the face's normal
 /// from the beginning on, as it was before it crossed, however large the triangles are.
-/// Cost: one penetration query and four support points a pair.
+/// Cost: one penetration query and four support points a pair, and two more.
 Crossing overlap(const levels::PairState& pair, CrossingScratch& scratch) noexcept;
 
 }  // namespace palpate::regions

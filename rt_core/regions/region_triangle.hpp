@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "rt_core/geometry/vec3.hpp"
 #include "rt_core/image/view.hpp"
 
 namespace palpate::regions {
@@ -13,6 +14,12 @@ inline Vec3d corner(const image::RegionTriangle& t, std::uint32_t i, double scal
   return scale * Vec3d{static_cast<double>(t.corners[3 * i]),
                        static_cast<double>(t.corners[3 * i + 1]),
                        static_cast<double>(t.corners[3 * i + 2])};
+}
+
+/// Outward, of twice the triangle's area, in image coordinates.
+inline Vec3d normal_of(const image::RegionTriangle& t) noexcept {
+  const Vec3d p = corner(t, 0, 1);
+  return cross(corner(t, 1, 1) - p, corner(t, 2, 1) - p);
 }
 
 /// False where the surface may have been met from its back: it is open, or crosses itself.

@@ -20,6 +20,7 @@
 #include "rt_core/regions/region_state.hpp"
 #include "rt_core/regions/search.hpp"
 #include "rt_core/regions/sweep.hpp"
+#include "rt_core/regions/ways_out.hpp"
 
 namespace palpate::regions {
 
@@ -48,6 +49,7 @@ struct QueryMemory {
   std::span<RegionState> states;         ///< [sum over pairs of the regions of a]
   std::span<Active> active;              ///< [states]
   std::span<std::uint32_t> queue;        ///< [states]
+  std::span<WayOut> ways_out;            ///< [states]
   std::span<float> swept;                ///< [most regions of one body]
   std::span<Contact> contacts;           ///< [limits.contacts]
   SearchScratch* search = nullptr;

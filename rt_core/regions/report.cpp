@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/report.hpp"
 
+#include "rt_core/geometry/smooth_step.hpp"
+#include "rt_core/regions/around.hpp"
+#include "rt_core/regions/border.hpp"
 #include "rt_core/regions/region_triangle.hpp"
 
 namespace palpate::regions {
@@ -8,6 +11,9 @@ namespace {
 
 using image::RegionTriangle;
 using levels::PairState;
+
+/// Directions of so short a vector are rounding.
+constexpr double kTouching = static_cast<double>(kRounding);
 
 class Report {
  public:
@@ -31,6 +37,7 @@ class Report {
         pending = 0;
       }
     }
+    share_by_ways_out(memory_.ways_out.first(ways_out_), memory_.contacts.first(result_.contacts));
   }
 
  private:
@@ -51,12 +58,13 @@ class Report {
     memory_.kernels->witnesses(memory_.search->kernel, found);
     for (std::uint32_t i = 0; i < count; ++i) {
       const Active& item = active_[batch[i]];
-      if ((found.crossing >> i & 1u) != 0) {
-        report_crossing(item);
-        continue;
+      const Vec3d apart = lane(found.apart, i);
+      const bool crosses = (found.crossing >> i & 1u) != 0;
+      // What is nearest may touch while others cross: where edges meet edges exactly.
+      if (crosses || norm(apart) <= kTouching) {
+        if (report_crossing(item, crosses)) continue;
       }
-      const Vec3d on_a = origin[i] + lane(found.on_a, i);
-      report_apart(item, on_a, lane(found.apart, i));
+      report_apart(item, origin[i] + lane(found.on_a, i), apart);
     }
   }
 
@@ -92,46 +100,69 @@ class Report {
     const PairState& pair = pair_of(item);
     const Witness& witness = state_of(item).witness;
     const double distance = norm(apart);
-    constexpr double kTouching = 1e-9;  // a direction of so short a vector is rounding
     // Touching, the outward normal of b's is right whichever side a comes from.
     const Vec3d normal = distance > kTouching ? (1 / distance) * apart : facing(pair, witness.b);
-    const bool flip =
-        distance > kTouching && (memory_.containment[item.pair].inside || is_behind(item, normal));
+    const bool flip = distance > kTouching && (memory_.containment[item.pair].inside ||
+                                               is_behind(item, on_a - apart, normal));
     const double side = flip ? -1 : 1;
     add(item, {on_a, on_a - apart, side * normal, side * distance,
                pair.image_a->region_triangles[witness.a].piece,
-               pair.image_b->region_triangles[witness.b].piece});
+               pair.image_b->region_triangles[witness.b].piece,
+               flip ? 1 : share_at_border(item, on_a, normal)});
   }
 
-  /// The region is nearest to the inner side of a face of b: it has passed through, beside others
+  /// The region is nearest to the inner side of b's surface: it has passed through, beside others
   /// of its body that cross the surface or not. At an edge or a corner one face may mislead; of
   /// those there, the one met most squarely tells. Not told where the interval is so open that the
   /// nearest may be a face before this one, on a wall thinner than the interval; nor from a surface
   /// that is open to its back.
-  bool is_behind(const Active& item, Vec3d normal) noexcept {
-    constexpr double kSquare = -0.9;
+  bool is_behind(const Active& item, Vec3d on_b, Vec3d normal) noexcept {
+    constexpr double kSquare = 0.5;  // where none is met so squarely, blades meet
+    constexpr double kMoreSquare = 1e-3;
     constexpr double kMostOpen = 0.1;  // of delta
     const PairState& pair = pair_of(item);
-    const std::uint32_t face = state_of(item).witness.b;
-    const double own = dot(normal, facing(pair, face));
-    if (own > kSquare || static_cast<double>(item.width) > kMostOpen * pair.delta) return false;
+    if (static_cast<double>(item.width) > kMostOpen * pair.delta) return false;
     const ImageView& b = *pair.image_b;
-    for (const std::uint32_t beside : b.region_triangles[face].neighbours) {
-      if (beside != image::kNone && dot(normal, facing(pair, beside)) >= -own) return false;
-    }
-    return is_closed(b, b.region_triangles[face]);
+    const std::uint32_t face = state_of(item).witness.b;
+    double least = dot(normal, facing(pair, face));
+    if (least > kSquare) return false;
+    double most = least;
+    const Vec3d point =
+        (1 / pair.scale_b) * (transpose(pair.b_in_a.rotation) * (on_b - pair.b_in_a.translation));
+    visit_around(b, face, point, [&](const Sector& sector) {
+      const double beside = dot(normal, facing(pair, sector.triangle));
+      least = beside < least ? beside : least;
+      most = beside > most ? beside : most;
+    });
+    return least < -kSquare && most + kMoreSquare < -least &&
+           is_closed(b, b.region_triangles[face]);
   }
 
   /// The outward normal of a triangle of b.
   static Vec3d facing(const PairState& pair, std::uint32_t triangle) noexcept {
-    const RegionTriangle& t = pair.image_b->region_triangles[triangle];
-    const Vec3d p = corner(t, 0, 1);
-    const Vec3d n = pair.b_in_a.rotation * cross(corner(t, 1, 1) - p, corner(t, 2, 1) - p);
+    const Vec3d n = pair.b_in_a.rotation * normal_of(pair.image_b->region_triangles[triangle]);
     const double length = norm(n);
     return length > 0 ? (1 / length) * n : Vec3d{1, 0, 0};
   }
 
-  void report_crossing(const Active& item) noexcept {
+  /// A region that ends beside a nearer place has its nearest point on its own border, in a
+  /// direction that leans: it would push along an edge that it lies on. Less of it is felt the
+  /// faster the distance falls where the surface goes on, if that is known to be nearer.
+  double share_at_border(const Active& item, Vec3d on_a, Vec3d normal) noexcept {
+    constexpr double kAll = 0.1;  // sines of the lean
+    constexpr double kNone = 0.5;
+    const PairState& pair = pair_of(item);
+    const Witness& witness = state_of(item).witness;
+    const Fall fall = fall_across(*pair.image_a, witness.a, (1 / pair.scale_a) * on_a, normal);
+    if (!(fall.rate > kAll)) return 1;
+    const Witness& beside = memory_.states[memory_.first_state[item.pair] + fall.region].witness;
+    if (!beside.known() || !(beside.distance < witness.distance)) return 1;
+    return smooth_step((kNone - fall.rate) / (kNone - kAll));
+  }
+
+  /// @param witness_crosses  found or not, there is a pair that does
+  /// @return false where none crosses
+  bool report_crossing(const Active& item, bool witness_crosses) noexcept {
     const PairState& pair = pair_of(item);
     const PairFrame& frame = memory_.frames[item.pair];
     const Witness& witness = state_of(item).witness;
@@ -139,13 +170,21 @@ class Report {
     scratch.list = {};
     find_crossings(*memory_.kernels, pair, frame, *memory_.search, pace_, item.region,
                    scratch.list);
-    // Only where the budget or rounding kept the search from finding any: the list shall not depend
-    // on how the witness came about.
-    if (scratch.list.count == 0) note_crossing(pair, witness.a, witness.b, scratch.list);
+    if (scratch.list.count == 0) {
+      if (!witness_crosses) return false;
+      // Only where the budget or rounding kept the search from finding any: the list shall not
+      // depend on how the witness came about.
+      note_crossing(pair, witness.a, witness.b, scratch.list);
+    }
     if (scratch.list.count == kMaxCrossings) result_.iteration_cap_met = true;
     const Crossing c = overlap(pair, scratch);
     if (!c.exact) result_.iteration_cap_met = true;
+    const std::uint32_t contact = result_.contacts;
     add(item, {c.point_a, c.point_b, c.normal, -c.depth, c.piece_a, c.piece_b});
+    if (result_.contacts > contact && c.way_length > 0) {
+      memory_.ways_out[ways_out_++] = {c.way_length, contact};
+    }
+    return true;
   }
 
   /// In the coordinates of a, lengths in units.
@@ -156,6 +195,7 @@ class Report {
     double distance;
     std::uint32_t piece_a;
     std::uint32_t piece_b;
+    double share = 1;
   };
 
   void add(const Active& item, const Found& found) noexcept {
@@ -170,6 +210,7 @@ class Report {
     out.centre_m = 0.5 * (out.point_a_m + out.point_b_m);
     out.normal = pair.rotation_a * found.normal;
     out.distance_m = found.distance * pair.unit_m;
+    out.share = found.share;
     out.weight = 0;
     out.pair = item.pair;
     out.piece_a = found.piece_a;
@@ -183,6 +224,7 @@ class Report {
   std::span<const Active> active_;
   Pace& pace_;
   QueryResult& result_;
+  std::uint32_t ways_out_ = 0;
 };
 
 }  // namespace

@@ -110,6 +110,8 @@ TEST_P(AnalyticScene, box_face_on_a_plane) {
 
 /// Regions share a face as they are cut.
 class LevelsScene : public AnalyticScene {};
+/// Hulls of thick solids reach behind the faces that are beside them.
+class RegionsScene : public AnalyticScene {};
 
 TEST_P(LevelsScene, box_that_rocks_on_a_plane_is_set_back) {
   constexpr double kHalf_m = 0.01, kGap_m = 0.1e-3;
@@ -174,32 +176,47 @@ TEST_P(AnalyticScene, leaning_box_of_many_triangles_is_pushed_out_of_a_plane_alo
   }
 }
 
-/// A groove across x, from its polygon's corners on.
-bake::Mesh groove() {
+using Polygon = std::vector<std::pair<double, double>>;  ///< x and z, counter-clockwise from y < 0
+
+/// A bar along y of a section that is cut into triangles.
+bake::Mesh bar(const Polygon& section, std::initializer_list<bake::Face> cut) {
   constexpr double kHalf_m = 0.03;
   bake::Mesh m;
   for (const double y : {-kHalf_m, kHalf_m}) {
-    for (const auto& [x, z] : {std::pair{-0.03, -0.03},
-                               {0.03, -0.03},
-                               {0.03, 0.02},
-                               {0.02, 0.02},
-                               {0.0, 0.0},
-                               {-0.02, 0.02},
-                               {-0.03, 0.02}}) {
-      m.points.push_back({x, y, z});
-    }
+    for (const auto& [x, z] : section) m.points.push_back({x, y, z});
   }
-  for (const bake::Face& f :
-       std::initializer_list<bake::Face>{{0, 1, 4}, {1, 2, 3}, {1, 3, 4}, {0, 4, 5}, {0, 5, 6}}) {
+  const auto count = static_cast<std::uint32_t>(section.size());
+  for (const bake::Face& f : cut) {
     m.faces.push_back(f);
-    m.faces.push_back({f[0] + 7, f[2] + 7, f[1] + 7});
+    m.faces.push_back({f[0] + count, f[2] + count, f[1] + count});
   }
-  for (std::uint32_t i = 0; i < 7; ++i) {
-    const std::uint32_t next = (i + 1) % 7;
-    m.faces.push_back({i, i + 7, next + 7});
-    m.faces.push_back({i, next + 7, next});
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t next = (i + 1) % count;
+    m.faces.push_back({i, i + count, next + count});
+    m.faces.push_back({i, next + count, next});
   }
   return m;
+}
+
+bake::Mesh groove() {
+  return bar({{-0.03, -0.03},
+              {0.03, -0.03},
+              {0.03, 0.02},
+              {0.02, 0.02},
+              {0.0, 0.0},
+              {-0.02, 0.02},
+              {-0.03, 0.02}},
+             {{0, 1, 4}, {1, 2, 3}, {1, 3, 4}, {0, 4, 5}, {0, 5, 6}});
+}
+
+/// A floor at z = 0 that ends at x = 0 in a wall up or down.
+bake::Mesh floor_and_wall_up() {
+  return bar({{-0.02, -0.02}, {0.03, -0.02}, {0.03, 0}, {0, 0}, {0, 0.03}, {-0.02, 0.03}},
+             {{0, 1, 3}, {1, 2, 3}, {0, 3, 4}, {0, 4, 5}});
+}
+bake::Mesh floor_and_wall_down() {
+  return bar({{-0.03, -0.03}, {0.03, -0.03}, {0.03, -0.015}, {0, -0.015}, {0, 0}, {-0.03, 0}},
+             {{0, 1, 3}, {1, 2, 3}, {0, 3, 4}, {0, 4, 5}});
 }
 
 /// Patches of a fine mesh are thin, and what has passed through them is on their inner side. Both
@@ -226,6 +243,52 @@ TEST_P(AnalyticScene, ball_pressed_into_a_groove_of_many_triangles_is_pushed_out
     const double first_N = spring_N(-overlap_m), second_N = spring_N(-0.5 * overlap_m);
     const Vec3d expected_N{s * (first_N - second_N), 0, s * (first_N + second_N)};
     EXPECT_NEAR(norm(r.wrench.force_N - expected_N), 0, 0.05 * norm(expected_N)) << i;
+  }
+}
+
+/// Where its edges lie exactly along those of the corner, the nearest points of what has passed
+/// through are on the crease, which is the inner side of both walls.
+TEST_P(AnalyticScene, box_of_many_triangles_in_line_with_a_corner_is_pushed_out_by_both_walls) {
+  constexpr double kHalf_m = 0.01;
+  const BakedBody a = body(quartered(box(kHalf_m, kHalf_m, kHalf_m), 3)),
+                  b = body(quartered(floor_and_wall_up(), 3));
+  load({&a, &b});
+  for (const double overlap_m : {-0.1e-3, 0.02e-3, 0.2e-3}) {
+    const Vec3d expected_N{spring_N(-overlap_m), 0, spring_N(-0.8 * overlap_m)};
+    const TickResult r = at({{kHalf_m - overlap_m, 0, kHalf_m - 0.8 * overlap_m}, {}});
+    EXPECT_NEAR(norm(r.wrench.force_N - expected_N), 0, 0.03 * norm(expected_N)) << overlap_m;
+  }
+}
+
+/// However deep it is in the wall, it is in the floor only as deep as it is in the floor.
+TEST_P(RegionsScene,
+       box_of_many_triangles_deep_in_a_wall_is_lifted_by_the_floor_as_far_as_it_is_in) {
+  constexpr double kHalf_m = 0.01, kInWall_m = 0.4e-3, kInFloor_m = 0.02e-3;
+  const BakedBody a = body(quartered(box(kHalf_m, kHalf_m, kHalf_m), 3)),
+                  b = body(quartered(floor_and_wall_up(), 3));
+  load({&a, &b});
+  for (int i = 0; i <= 60; ++i) {
+    const TickResult r = at({{kHalf_m - kInWall_m, 0.003 * std::sin(0.1 * i), kHalf_m - kInFloor_m},
+                             turn({0, 2e-4 * i - 6e-3, 0})});
+    EXPECT_NEAR(r.wrench.force_N.z, spring_N(-kInFloor_m), 0.2 * spring_N(0)) << i;
+  }
+}
+
+/// The regions of its sides that the edge has entered tell ways out as long as the box.
+TEST_P(RegionsScene, box_of_many_triangles_on_the_edge_of_a_step_is_pushed_off_along_its_face) {
+  constexpr double kHalf_m = 0.01, kOverlap_m = 0.25e-3;
+  const BakedBody a = body(quartered(box(kHalf_m, kHalf_m, kHalf_m), 3)),
+                  b = body(quartered(floor_and_wall_down(), 3));
+  load({&a, &b});
+  for (int i = 0; i <= 60; ++i) {
+    const Quat leaning = turn({0, 0.3 + 0.1 * std::sin(0.1 * i), 0});
+    const Mat3d r = rotation(leaning);
+    const Vec3d up = r * Vec3d{0, 0, 1};
+    const Vec3d on_face_m =
+        r * Vec3d{0.004 * std::sin(0.1 * i), 0.003 * std::cos(0.2 * i), -kHalf_m};
+    const TickResult result = at({-on_face_m - kOverlap_m * up, leaning});
+    const Vec3d expected_N = spring_N(-kOverlap_m) * up;
+    EXPECT_NEAR(norm(result.wrench.force_N - expected_N), 0, 0.1 * norm(expected_N)) << i;
   }
 }
 
@@ -271,6 +334,29 @@ TEST_P(AnalyticScene, box_edge_on_edge) {
   }
 }
 
+/// A region that ends beside the place where the edges cross is nearest there, and leans.
+TEST_P(AnalyticScene, edges_of_boxes_of_many_triangles_cross_without_pushing_along_each_other) {
+  constexpr double kHalf_m = 0.01, kGap_m = 0.2e-3;
+  constexpr int kTicks = 200;
+  constexpr double kEighth = std::numbers::pi / 4;
+  const bake::Mesh cube = quartered(box(kHalf_m, kHalf_m, kHalf_m), 4);
+  const BakedBody a = body(cube), b = body(cube);
+  const Quat other = turn({0, kEighth, 0});
+  const Quat back{other.w, -other.x, -other.y, -other.z};
+  load({&a, &b});
+  const Vec3d up = rotation(back) * Vec3d{0, 0, 1};
+  double sum = 0;
+  for (int i = 0; i < kTicks; ++i) {
+    const Vec3d shift_m = rotation(back) * Vec3d{0.004 * i / kTicks - 0.002, 0.003 * i / kTicks, 0};
+    const double up_m = 2 * std::numbers::sqrt2 * kHalf_m + kGap_m;
+    const TickResult r = at({up_m * up + shift_m, back * turn({kEighth, 0, 0})});
+    const double off = norm(r.wrench.force_N - spring_N(kGap_m) * up) / spring_N(kGap_m);
+    EXPECT_LT(off, 0.15) << i;
+    sum += off;
+  }
+  EXPECT_LT(sum / kTicks, 0.01);
+}
+
 TEST_P(AnalyticScene, peg_between_opposed_walls) {
   constexpr double kHalf_m = 0.01, kClearance_m = 0.2e-3;
   bake::Mesh below, above;
@@ -296,6 +382,8 @@ TEST_P(AnalyticScene, peg_between_opposed_walls) {
 
 INSTANTIATE_TEST_SUITE_P(Engine, LevelsScene, testing::Values(EngineKind::levels),
                          [](const auto&) { return "levels"; });
+INSTANTIATE_TEST_SUITE_P(Engine, RegionsScene, testing::Values(EngineKind::regions),
+                         [](const auto&) { return "regions"; });
 INSTANTIATE_TEST_SUITE_P(Engines, AnalyticScene,
                          testing::Values(EngineKind::levels, EngineKind::regions),
                          [](const auto& tested) {

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles that meet in a point, and how the distance falls across the borders of regions.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "rt_core/regions/around.hpp"
+#include "rt_core/regions/border.hpp"
+
+namespace palpate::regions {
+namespace {
+
+using image::kNone;
+using image::RegionTriangle;
+using Corners = std::array<std::uint32_t, 3>;
+
+/// The cube from -1 to 1; each side is a region of its own, of two triangles.
+class Cube {
+ public:
+  explicit Cube(std::size_t triangles = 12) {
+    constexpr std::array<Corners, 12> kCorners{{{0, 2, 3},
+                                                {0, 3, 1},
+                                                {4, 5, 7},
+                                                {4, 7, 6},
+                                                {0, 1, 5},
+                                                {0, 5, 4},
+                                                {2, 6, 7},
+                                                {2, 7, 3},
+                                                {0, 4, 6},
+                                                {0, 6, 2},
+                                                {1, 3, 7},
+                                                {1, 7, 5}}};
+    for (std::uint32_t i = 0; i < triangles; ++i) {
+      RegionTriangle t{};
+      t.region = i / 2;
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        for (std::uint32_t k = 0; k < 3; ++k) {
+          t.corners[3 * c + k] = (kCorners[i][c] >> k & 1u) != 0 ? 1.0f : -1.0f;
+        }
+        t.neighbours[c] = kNone;
+        for (std::uint32_t j = 0; j < triangles; ++j) {
+          for (std::uint32_t e = 0; e < 3; ++e) {
+            if (kCorners[j][e] == kCorners[i][(c + 1) % 3] &&
+                kCorners[j][(e + 1) % 3] == kCorners[i][c]) {
+              t.neighbours[c] = j;
+            }
+          }
+        }
+      }
+      triangles_.push_back(t);
+    }
+    view.region_triangles = triangles_;
+  }
+
+  /// The triangles around a point, without `triangle` itself.
+  std::multiset<std::uint32_t> around(std::uint32_t triangle, Vec3d point) const {
+    std::multiset<std::uint32_t> found;
+    visit_around(view, triangle, point, [&](const Sector& s) { found.insert(s.triangle); });
+    return found;
+  }
+
+  ImageView view;
+
+ private:
+  std::vector<RegionTriangle> triangles_;
+};
+
+/// z = -1 is the side of triangles 0 and 1.
+constexpr std::uint32_t kBelow = 0;
+
+TEST(RegionsBorder, nothing_else_holds_a_point_inside_a_triangle) {
+  EXPECT_TRUE(Cube().around(kBelow, {-0.5, 0.5, -1}).empty());
+}
+
+TEST(RegionsBorder, one_triangle_is_across_an_edge) {
+  EXPECT_EQ(Cube().around(kBelow, {0, 0, -1}), (std::multiset<std::uint32_t>{1}));
+  EXPECT_EQ(Cube().around(kBelow, {-1, 0.3, -1}), (std::multiset<std::uint32_t>{9}));
+}
+
+TEST(RegionsBorder, all_triangles_around_a_corner_are_found_once) {
+  EXPECT_EQ(Cube().around(kBelow, {-1, -1, -1}), (std::multiset<std::uint32_t>{1, 4, 5, 8, 9}));
+  EXPECT_EQ(Cube().around(kBelow, {-1, 1, -1}), (std::multiset<std::uint32_t>{6, 7, 9}));
+}
+
+TEST(RegionsBorder, around_a_corner_of_an_open_surface_both_ways_are_gone) {
+  const Cube open(9);  // without triangle 9 and the side x = 1
+  EXPECT_EQ(open.around(kBelow, {-1, -1, -1}), (std::multiset<std::uint32_t>{1, 4, 5, 8}));
+  EXPECT_EQ(open.around(5, {-1, -1, -1}), (std::multiset<std::uint32_t>{0, 1, 4, 8}));
+}
+
+TEST(RegionsBorder, sectors_lead_counter_clockwise_over_their_triangles) {
+  const Cube cube;
+  for (const Vec3d point : {Vec3d{-1, -1, -1}, Vec3d{-1, 0.3, -1}}) {
+    visit_around(cube.view, kBelow, point, [&](const Sector& s) {
+      const Vec3d normal = normal_of(cube.view.region_triangles[s.triangle]);
+      EXPECT_NEAR(dot(s.from, normal), 0, 1e-12);
+      EXPECT_NEAR(dot(s.to, normal), 0, 1e-12);
+      EXPECT_GE(dot(cross(s.from, s.to), normal), 0);
+    });
+  }
+}
+
+TEST(RegionsBorder, distance_falls_across_an_edge_by_the_sine_of_the_lean) {
+  const Cube cube;
+  const double lean = 0.3;
+  // From a point beside the cube's lower edge at x = -1, above that edge.
+  const Fall fall =
+      fall_across(cube.view, kBelow, {-1, 0.3, -1}, {std::cos(lean), 0, -std::sin(lean)});
+  EXPECT_NEAR(fall.rate, std::sin(lean), 1e-12);
+  EXPECT_EQ(fall.region, cube.view.region_triangles[9].region);
+}
+
+TEST(RegionsBorder, distance_does_not_fall_where_the_point_is_the_nearest_of_all) {
+  const Cube cube;
+  const Vec3d beside{std::sqrt(0.5), 0, std::sqrt(0.5)};
+  EXPECT_EQ(fall_across(cube.view, kBelow, {-1, 0.3, -1}, beside).rate, 0);
+  EXPECT_EQ(fall_across(cube.view, kBelow, {-1, 0.3, -1}, {0, 0, 1}).rate, 0);
+  const double third = std::sqrt(1.0 / 3);
+  EXPECT_EQ(fall_across(cube.view, kBelow, {-1, -1, -1}, {third, third, third}).rate, 0);
+}
+
+TEST(RegionsBorder, steepest_way_around_a_corner_tells) {
+  const Cube cube;
+  // The nearest of the lower side is its corner; the edge up from there leads nearer, and over the
+  // two walls nothing does sooner.
+  const Vec3d up{0.48, 0.6, -0.64};
+  const Fall fall = fall_across(cube.view, kBelow, {-1, -1, -1}, up);
+  EXPECT_NEAR(fall.rate, 0.64, 1e-12);
+  // Over the wall at y = -1 it leads nearer still.
+  const Vec3d aside{-0.48, 0.6, -0.64};
+  const Fall on_wall = fall_across(cube.view, kBelow, {-1, -1, -1}, aside);
+  EXPECT_NEAR(on_wall.rate, 0.8, 1e-12);
+  EXPECT_EQ(on_wall.region, cube.view.region_triangles[4].region);
+}
+
+TEST(RegionsBorder, own_region_is_no_border) {
+  // Across the diagonal the same side goes on.
+  EXPECT_EQ(fall_across(Cube().view, kBelow, {0, 0, -1}, {-0.6, 0.8, 0}).rate, 0);
+}
+
+}  // namespace
+}  // namespace palpate::regions
