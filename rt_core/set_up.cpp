@@ -96,7 +96,7 @@ void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
   out.regions = arena.array<regions::RegionState>(all);
   out.active = arena.array<regions::Active>(all);
   out.queue = arena.array<std::uint32_t>(all);
-  out.ways_out = arena.array<regions::WayOut>(all);
+  out.ways_out = arena.array<regions::WayOut>(regions::ways_out_for(all));
   out.swept = arena.array<float>(most);
   out.search = arena.array<regions::SearchScratch>(1);
   out.crossing = arena.array<regions::CrossingScratch>(1);

@@ -71,10 +71,10 @@ double agreement(const CrossingOfPieces& pieces, Vec3d way) noexcept {
   return length > 0 ? dot(pieces.way, way) / length : 1;
 }
 
-/// Of the deepest pieces that are led out along `way`. A box in a slot is as deep in the floor as
-/// the floor says, however deep it is in the wall: of a depth counts all where the cosine is seven
-/// tenths of the largest, and nothing where it is two tenths.
-Crossing deepest_along(std::span<const CrossingOfPieces> pieces, Vec3d way) noexcept {
+/// Depths as they count along `way`. A box in a slot is as deep in the floor as the floor says,
+/// however deep it is in the wall: all of a depth where the cosine is seven tenths of the largest,
+/// and nothing where it is two tenths.
+void count_along(std::span<CrossingOfPieces> pieces, Vec3d way) noexcept {
   constexpr double kNone = 0.2;
   constexpr double kAll = 0.7;
   double most = 0;
@@ -82,16 +82,29 @@ Crossing deepest_along(std::span<const CrossingOfPieces> pieces, Vec3d way) noex
     const double cosine = agreement(p, way);
     most = cosine > most ? cosine : most;
   }
-  Crossing out;
-  for (const CrossingOfPieces& p : pieces) {
-    Crossing next = p.overlap;
-    // Ways that all lead elsewhere are outweighed by pieces for which there was no room.
-    if (most > 0) {
-      next.depth *= smooth_step((agreement(p, way) / most - kNone) / (kAll - kNone));
-    }
-    if (next.depth > out.depth) out = next;
+  if (!(most > 0)) return;  // outweighed by pieces for which there was no room
+  for (CrossingOfPieces& p : pieces) {
+    p.overlap.depth *= smooth_step((agreement(p, way) / most - kNone) / (kAll - kNone));
   }
-  return out;
+}
+
+const Crossing& deepest_of(std::span<const CrossingOfPieces> pieces) noexcept {
+  const CrossingOfPieces* deepest = pieces.data();
+  for (const CrossingOfPieces& p : pieces) {
+    if (p.overlap.depth > deepest->overlap.depth) deepest = &p;
+  }
+  return deepest->overlap;
+}
+
+/// Who has a part in a depth, not by chance where several are as deep: the pieces that are deeper
+/// than nine tenths of it.
+void take_part(std::span<CrossingOfPieces> pieces, double depth) noexcept {
+  double sum = 0;
+  for (CrossingOfPieces& p : pieces) {
+    p.part = depth > 0 ? smooth_step(10 * p.overlap.depth / depth - 9) : 0;
+    sum += p.part;
+  }
+  for (CrossingOfPieces& p : pieces) p.part = sum > 0 ? p.part / sum : 0;
 }
 
 }  // namespace
@@ -100,29 +113,32 @@ Crossing overlap(const levels::PairState& pair, CrossingScratch& scratch) noexce
   const CrossingList& list = scratch.list;
   CrossingCurve all = list.rest;
   Vec3d way = all.along_a + all.along_b;
-  Crossing deepest;
+  const std::span<CrossingOfPieces> found{scratch.of_pieces, list.count};
   for (std::uint32_t i = 0; i < list.count; ++i) {
     const CrossingPieces& pieces = list.pieces[i];
     const Hulls of = hulls_of(pair, pieces.a, pieces.b);
     const convex::HullPair hulls{of.a, of.b, pair.b_in_a};
-    CrossingOfPieces& found = scratch.of_pieces[i];
-    found = {crossing_of(pair, pieces, hulls, scratch.polytope), way_out(pieces.curve, hulls)};
-    if (found.overlap.depth > deepest.depth) deepest = found.overlap;
-    way += found.way;
+    found[i] = {crossing_of(pair, pieces, hulls, scratch.polytope), way_out(pieces.curve, hulls)};
+    way += found[i].way;
     all.length += pieces.curve.length;
     all.moment += pieces.curve.moment;
   }
   const double decided = norm(way);
-  if (decided <= kLeastDecided * all.length) return deepest;
+  if (decided <= kLeastDecided * all.length) return deepest_of(found);
   const Vec3d normal = (1 / decided) * way;
-  Crossing out = deepest_along({scratch.of_pieces, list.count}, normal);
+  count_along(found, normal);
+  Crossing out = deepest_of(found);
   out.normal = normal;
-  const Hulls of = hulls_of(pair, out.piece_a, out.piece_b);
-  out.way_length = depth_along({of.a, of.b, pair.b_in_a}, normal);
   const Vec3d middle = (1 / all.length) * all.moment;
   const Vec3d half = (0.5 * out.depth) * out.normal;
   out.point_a = middle - half;
   out.point_b = middle + half;
+  take_part(found, out.depth);
+  for (CrossingOfPieces& p : found) {
+    if (!(p.part > 0)) continue;
+    const Hulls of = hulls_of(pair, p.overlap.piece_a, p.overlap.piece_b);
+    p.way_length = depth_along({of.a, of.b, pair.b_in_a}, normal);
+  }
   return out;
 }
 

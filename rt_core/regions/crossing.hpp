@@ -13,8 +13,6 @@ namespace palpate::regions {
 /// In the coordinates of a, lengths in units: point_b - point_a = depth * normal.
 struct Crossing {
   double depth = -1;
-  double way_length = 0;  ///< how far its pieces have to move along the normal until they part; 0
-                          ///< where the curve tells no way
   Vec3d point_a{};
   Vec3d point_b{};
   Vec3d normal{};
@@ -26,14 +24,17 @@ struct Crossing {
 /// Two pieces that cross, by themselves.
 struct CrossingOfPieces {
   Crossing overlap;
-  Vec3d way{};  ///< out, as long as their part of the curve says it surely; 0: not told
+  Vec3d way{};            ///< out, as long as their part of the curve says it surely; 0: not told
+  double part = 0;        ///< of the region's depth: 0 where others are deeper
+  double way_length = 0;  ///< how far they have to move along the region's normal until they part;
+                          ///< 0: no part, or they only touch
 };
 
 /// Working memory of one query at a time; needs no initialisation.
 struct CrossingScratch {
   convex::PenetrationScratch polytope;
   CrossingList list;
-  CrossingOfPieces of_pieces[kMaxCrossings];
+  CrossingOfPieces of_pieces[kMaxCrossings];  ///< [list.count] after overlap()
 };
 
 /// The overlap of a region whose list is not empty: as deep as the deepest of the pairs of pieces
@@ -49,7 +50,7 @@ struct CrossingScratch {
 /// b along their part of the curve, nearly all along those by which the pieces part sooner, and the
 /// region in the mean direction: so a corner or a side in a face is pushed along the face's normal
 /// from the beginning on, as it was before it crossed, however large the triangles are.
-/// Cost: one penetration query and four support points a pair, and two more.
+/// Cost: one penetration query and up to six support points a pair.
 Crossing overlap(const levels::PairState& pair, CrossingScratch& scratch) noexcept;
 
 }  // namespace palpate::regions

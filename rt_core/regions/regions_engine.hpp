@@ -39,6 +39,11 @@ struct Active {
   bool climbed = false;  ///< the witness has been moved to the nearest of its neighbours
 };
 
+/// Room for the ways out of pieces that cross, over all regions; what is beyond is felt whole.
+constexpr std::size_t ways_out_for(std::size_t states) noexcept {
+  return 2 * states + std::size_t{kMaxCrossings} * kMaxCrossings;
+}
+
 /// Memory of the query, borrowed from the engine.
 struct QueryMemory {
   const Kernels* kernels = nullptr;
@@ -49,7 +54,7 @@ struct QueryMemory {
   std::span<RegionState> states;         ///< [sum over pairs of the regions of a]
   std::span<Active> active;              ///< [states]
   std::span<std::uint32_t> queue;        ///< [states]
-  std::span<WayOut> ways_out;            ///< [states]
+  std::span<WayOut> ways_out;            ///< [ways_out_for(states)]
   std::span<float> swept;                ///< [most regions of one body]
   std::span<Contact> contacts;           ///< [limits.contacts]
   SearchScratch* search = nullptr;

@@ -181,10 +181,21 @@ class Report {
     if (!c.exact) result_.iteration_cap_met = true;
     const std::uint32_t contact = result_.contacts;
     add(item, {c.point_a, c.point_b, c.normal, -c.depth, c.piece_a, c.piece_b});
-    if (result_.contacts > contact && c.way_length > 0) {
-      memory_.ways_out[ways_out_++] = {c.way_length, contact};
-    }
+    if (result_.contacts > contact) note_ways_out(scratch, contact);
     return true;
+  }
+
+  void note_ways_out(const CrossingScratch& scratch, std::uint32_t contact) noexcept {
+    for (std::uint32_t i = 0; i < scratch.list.count; ++i) {
+      const CrossingOfPieces& found = scratch.of_pieces[i];
+      if (!(found.way_length > 0)) continue;
+      if (ways_out_ == memory_.ways_out.size()) {
+        result_.iteration_cap_met = true;
+        return;
+      }
+      memory_.ways_out[ways_out_++] = {found.way_length, found.part, contact, found.overlap.piece_a,
+                                       found.overlap.piece_b};
+    }
   }
 
   /// In the coordinates of a, lengths in units.

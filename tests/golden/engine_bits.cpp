@@ -59,15 +59,15 @@ const Case kCases[] = {
     {"regions, exact",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .exact = true},
      kUnlimited,
-     0x688d427af8522fbd},
+     0x69f900900adab639},
     {"regions, 100 units",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      100,
-     0xfd9a2356d0d5d203},
+     0x8c5ae29a0699ec00},
     {"regions, tolerance",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .force_tolerance_N = 3},
      kUnlimited,
-     0x662e6249f9adad24},
+     0x4d7e44c74d5f8d71},
 };
 constexpr int kTicks = 200;
 
