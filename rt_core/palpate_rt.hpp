@@ -151,8 +151,8 @@ struct Certificate {
   double s_worst =
       0;  ///< largest weighted surface deviation left unrefined, relative to the radius
   /// Regions engine: the sizes of the regions' penalty forces, summed, are within this of the true
-  /// ones: stiffness times the sum of all open intervals below delta. Depths of overlap are not
-  /// covered.
+  /// ones: stiffness times the sum of all open intervals below delta. Depths of overlap and shares
+  /// (Contact::share) are not covered.
   double force_bound_N = 0;
   std::uint64_t units_used = 0;
   bool truncated_by_time = false;    ///< the clock ended refinement

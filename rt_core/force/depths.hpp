@@ -14,7 +14,7 @@ namespace palpate::force {
 struct Felt {
   Vec3d point_m{};     ///< between its points, from the tool's origin, world axes
   Vec3d direction{};   ///< unit: where it pushes the tool
-  double depth_m = 0;  ///< below delta; > 0
+  double depth_m = 0;  ///< below delta, as much of it as is felt; > 0
   double mass = 0;     ///< see penalty.hpp
   Spot spot;           ///< where it brought that
   std::uint32_t contact = 0;

@@ -37,8 +37,8 @@ struct Penalty {
 /// Departure from the paper, which gives every cluster of contacts its own force: there the force
 /// grows with the number of clusters that a contact area happens to cover, and jumps where a
 /// contact crosses the border of one. Here every direction is felt once, as hard as the deepest
-/// contact that pushes that way. With d_i = delta - distance_i, c_ij the cosine between the
-/// directions of two contacts and K = kinship(c_ij) (directions.hpp):
+/// contact that pushes that way. With d_i = share_i (delta - distance_i), c_ij the cosine
+/// between the directions of two contacts and K = kinship(c_ij) (directions.hpp):
 ///
 ///     force_i = k D_i m_i / sum_j (K_ij m_j),   D_i = max_j (K_ij d_j),
 ///
