@@ -134,8 +134,9 @@ struct Contact {
   Vec3d centre_m{};
   Vec3d normal{};         ///< unit, from b to a; of an overlap the way that parts the surfaces
   double distance_m = 0;  ///< signed: negative where the pieces overlap
-  /// So much of its depth below delta is felt: less than all (regions engine) where the contact is
-  /// on the border of a region beside which the surface goes on nearer.
+  /// 0 to 1: so much of its depth below delta is felt. Less than all in the regions engine only: on
+  /// the border of a region beside which the surface goes on nearer, and of an overlap that others
+  /// of the same pieces lead out of sooner.
   double share = 1;
   /// Its force on the tool is weight * stiffness * (delta - distance) along the normal.
   double weight = 0;

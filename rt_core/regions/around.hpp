@@ -49,17 +49,25 @@ struct Feature {
   return found;
 }
 
-/// The edge of a triangle that it shares with another; kNone where it has none.
-[[nodiscard]] inline std::uint32_t edge_to(const image::RegionTriangle& t,
-                                           std::uint32_t neighbour) noexcept {
+/// A triangle across an edge, and which of its edges that is there.
+struct Across {
+  std::uint32_t triangle = image::kNone;  ///< kNone: border of the surface
+  std::uint32_t edge = 0;
+};
+
+[[nodiscard]] inline Across across(const ImageView& image, std::uint32_t triangle,
+                                   std::uint32_t edge) noexcept {
+  const std::uint32_t next = image.region_triangles[triangle].neighbours[edge];
+  if (next == image::kNone) return {};
   for (std::uint32_t i = 0; i < 3; ++i) {
-    if (t.neighbours[i] == neighbour) return i;
+    if (image.region_triangles[next].neighbours[i] == triangle) return {next, i};
   }
-  return image::kNone;
+  return {};  // adjacency is not proved where an image is loaded
 }
 
 /// Calls visit(Sector) for every other triangle that holds a point of `triangle`: the one across
-/// its edge, or those around its corner, each way up to a border of the surface.
+/// its edge, or those around its corner, each way up to a border of the surface and kMostAround in
+/// all.
 /// @param point  image coordinates, on the triangle
 /// O(kMostAround)
 template <typename Visit>
@@ -67,30 +75,28 @@ void visit_around(const ImageView& image, std::uint32_t triangle, Vec3d point,
                   Visit visit) noexcept {
   const Feature at = feature_at(image.region_triangles[triangle], point);
   if (at.kind == Feature::Kind::face) return;
+  if (at.kind == Feature::Kind::edge) {
+    const Across next = across(image, triangle, at.index);
+    if (next.triangle == image::kNone) return;
+    const image::RegionTriangle& t = image.region_triangles[next.triangle];
+    const Vec3d along = corner(t, (next.edge + 1) % 3, 1) - corner(t, next.edge, 1);
+    visit(Sector{next.triangle, along, -along});
+    return;
+  }
   std::uint32_t left = kMostAround;
   for (const bool onwards : {true, false}) {
     std::uint32_t here = triangle;
-    std::uint32_t at_corner = at.index;
-    while (left > 0) {
+    std::uint32_t apex = at.index;
+    for (; left > 0; --left) {
+      const Across next = across(image, here, onwards ? apex : (apex + 2) % 3);
+      if (next.triangle == image::kNone) break;
+      if (next.triangle == triangle) return;
+      here = next.triangle;
+      apex = onwards ? (next.edge + 1) % 3 : next.edge;
       const image::RegionTriangle& t = image.region_triangles[here];
-      const std::uint32_t next = t.neighbours[onwards ? at_corner : (at_corner + 2) % 3];
-      if (next == image::kNone) break;
-      if (next == triangle) return;
-      const image::RegionTriangle& n = image.region_triangles[next];
-      const std::uint32_t shared = edge_to(n, here);
-      if (shared == image::kNone) break;
-      const Vec3d start = corner(n, shared, 1);
-      const Vec3d end = corner(n, (shared + 1) % 3, 1);
-      if (at.kind == Feature::Kind::edge) {
-        visit(Sector{next, end - start, start - end});
-        return;
-      }
-      at_corner = onwards ? (shared + 1) % 3 : shared;
-      const Vec3d apex = corner(n, at_corner, 1);
-      visit(Sector{next, corner(n, (at_corner + 1) % 3, 1) - apex,
-                   corner(n, (at_corner + 2) % 3, 1) - apex});
-      here = next;
-      --left;
+      const Vec3d point_at = corner(t, apex, 1);
+      visit(Sector{here, corner(t, (apex + 1) % 3, 1) - point_at,
+                   corner(t, (apex + 2) % 3, 1) - point_at});
     }
   }
 }

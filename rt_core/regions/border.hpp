@@ -16,11 +16,11 @@ struct Fall {
 };
 
 /// The steepest way that leads from a point into another region. rate is 0 where the point is not
-/// on the border of its region, and where the distance does not fall across it. Vertices of more
-/// than kMostAround triangles, and edges that are not shared by two, lead nowhere.
+/// on the border of its region, and where the distance does not fall across it: where it is the
+/// nearest of all around it. Only triangles that visit_around() finds count.
 /// @param point      image coordinates, on the triangle
 /// @param direction  unit: the way in which distance grows
-/// O(kMostAround)
+/// O(kMostAround) (around.hpp)
 [[nodiscard]] Fall fall_across(const ImageView& image, std::uint32_t triangle, Vec3d point,
                                Vec3d direction) noexcept;
 

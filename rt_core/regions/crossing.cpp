@@ -97,14 +97,20 @@ const Crossing& deepest_of(std::span<const CrossingOfPieces> pieces) noexcept {
 }
 
 /// Who has a part in a depth, not by chance where several are as deep: the pieces that are deeper
-/// than nine tenths of it.
-void take_part(std::span<CrossingOfPieces> pieces, double depth) noexcept {
+/// than nine tenths of it. For those, how long their way is.
+void take_part(const levels::PairState& pair, std::span<CrossingOfPieces> pieces, double depth,
+               Vec3d way) noexcept {
   double sum = 0;
   for (CrossingOfPieces& p : pieces) {
     p.part = depth > 0 ? smooth_step(10 * p.overlap.depth / depth - 9) : 0;
     sum += p.part;
   }
-  for (CrossingOfPieces& p : pieces) p.part = sum > 0 ? p.part / sum : 0;
+  for (CrossingOfPieces& p : pieces) {
+    if (!(p.part > 0)) continue;
+    p.part /= sum;
+    const Hulls of = hulls_of(pair, p.overlap.piece_a, p.overlap.piece_b);
+    p.way_length = depth_along({of.a, of.b, pair.b_in_a}, way);
+  }
 }
 
 }  // namespace
@@ -133,12 +139,7 @@ Crossing overlap(const levels::PairState& pair, CrossingScratch& scratch) noexce
   const Vec3d half = (0.5 * out.depth) * out.normal;
   out.point_a = middle - half;
   out.point_b = middle + half;
-  take_part(found, out.depth);
-  for (CrossingOfPieces& p : found) {
-    if (!(p.part > 0)) continue;
-    const Hulls of = hulls_of(pair, p.overlap.piece_a, p.overlap.piece_b);
-    p.way_length = depth_along({of.a, of.b, pair.b_in_a}, normal);
-  }
+  take_part(pair, found, out.depth, normal);
   return out;
 }
 

@@ -21,9 +21,9 @@ struct Crossing {
   bool exact = true;
 };
 
-/// Two pieces that cross, by themselves.
+/// Two pieces that cross in a region.
 struct CrossingOfPieces {
-  Crossing overlap;
+  Crossing overlap;       ///< its depth as it counts along the region's normal, after overlap()
   Vec3d way{};            ///< out, as long as their part of the curve says it surely; 0: not told
   double part = 0;        ///< of the region's depth: 0 where others are deeper
   double way_length = 0;  ///< how far they have to move along the region's normal until they part;

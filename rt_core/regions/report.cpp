@@ -61,9 +61,7 @@ class Report {
       const Vec3d apart = lane(found.apart, i);
       const bool crosses = (found.crossing >> i & 1u) != 0;
       // What is nearest may touch while others cross: where edges meet edges exactly.
-      if (crosses || norm(apart) <= kTouching) {
-        if (report_crossing(item, crosses)) continue;
-      }
+      if ((crosses || norm(apart) <= kTouching) && report_crossing(item, crosses)) continue;
       report_apart(item, origin[i] + lane(found.on_a, i), apart);
     }
   }
