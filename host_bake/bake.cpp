@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -21,6 +22,7 @@
 #include "host_bake/pack/aligned.hpp"
 #include "host_bake/pack/pack.hpp"
 #include "host_bake/regions/region_tree.hpp"
+#include "host_bake/simplify/reduce.hpp"
 
 namespace palpate::bake {
 namespace {
@@ -41,10 +43,18 @@ std::size_t peak_resident_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
+// Of a surface that is made coarser before it is baked: beyond it nothing is left of an object.
+constexpr double kMostDeviation = 0.1;
+
 void require_in_format(const NormalMesh& mesh, const BakeOptions& options) {
   if (options.engine != ForEngine::levels && (options.s0_min > 0 || options.max_bytes > 0)) {
     throw InputRefused("regions need the original surface, so nothing can be left out",
-                       "--s0-min or --max-bytes", "bake with --engine levels, or without them");
+                       "--s0-min or --max-bytes",
+                       "bake with --engine levels, or make the surface coarser (--max-deviation)");
+  }
+  if (!(options.max_deviation_rel >= 0) || options.max_deviation_rel > kMostDeviation) {
+    throw InputRefused("deviation out of range", std::to_string(options.max_deviation_rel),
+                       "give a length from 0 to 0.1, relative to the radius");
   }
   if (!(options.delta_rel > 0) || options.delta_rel > static_cast<double>(image::kMaxLength)) {
     throw InputRefused("delta out of range", std::to_string(options.delta_rel),
@@ -62,8 +72,17 @@ void require_in_format(const NormalMesh& mesh, const BakeOptions& options) {
   }
 }
 
-image::Header facts_of(const NormalMesh& mesh, const CheckReport& check,
-                       const BakeOptions& options) {
+// Never rounded down.
+float deviation_fact(double deviation) {
+  const auto f = static_cast<float>(deviation);
+  return static_cast<double>(f) < deviation
+             ? std::nextafter(f, std::numeric_limits<float>::infinity())
+             : f;
+}
+
+image::Header facts_of(const Reduced& surface, const BakeOptions& options) {
+  const NormalMesh& mesh = surface.mesh;
+  const CheckReport& check = surface.check;
   image::Header facts{};
   const auto flag = [](bool set, image::HeaderFlag f) {
     return set ? static_cast<std::uint32_t>(f) : 0u;
@@ -84,6 +103,7 @@ image::Header facts_of(const NormalMesh& mesh, const CheckReport& check,
   facts.stop_resolution = static_cast<float>(options.stop.stop_resolution);
   facts.stop_deviation_rel = static_cast<float>(options.stop_deviation_rel);
   facts.stop_pieces = options.stop.stop_pieces;
+  facts.source_deviation_rel = deviation_fact(surface.deviation);
   return facts;
 }
 
@@ -177,16 +197,23 @@ std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const Ba
   BakeReport report;
   report.threads = threads;
 
-  const NormalMesh normal = timed(report, "normalise", [&] { return normalise(mesh); });
-  require_in_format(normal, options);
-  const std::vector<Patch> patches =
-      timed(report, "decompose", [&] { return decompose(normal, check, threads, progress); });
+  NormalMesh whole = timed(report, "normalise", [&] { return normalise(mesh); });
+  require_in_format(whole, options);
+  report.mesh_triangles = whole.faces.size();
+  const Reduced surface = timed(report, "reduce", [&] {
+    return options.max_deviation_rel > 0
+               ? reduce(whole, check, options.max_deviation_rel, progress)
+               : Reduced{.mesh = std::move(whole), .check = check, .deviation = 0};
+  });
+  const NormalMesh& normal = surface.mesh;
+  const std::vector<Patch> patches = timed(
+      report, "decompose", [&] { return decompose(normal, surface.check, threads, progress); });
   const std::vector<Vec3d> normals = vertex_normals(normal);
   SimplifyReport simplification;
   Simplified simplified;
   simplified.levels = timed(report, "simplify", [&] {
     if (options.engine == ForEngine::regions) return std::vector<SimplifiedLevel>{};
-    return simplify(normal, check, patches, options.stop, progress, simplification);
+    return simplify(normal, surface.check, patches, options.stop, progress, simplification);
   });
   report.rejected = simplification.refused;
   timed(report, "deviation", [&] {
@@ -209,7 +236,7 @@ std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const Ba
                : build_regions(normal, region_options(options.delta_rel));
   });
   std::vector<std::byte> bytes = timed(report, "pack", [&] {
-    const image::Header facts = facts_of(normal, check, options);
+    const image::Header facts = facts_of(surface, options);
     return options.engine == ForEngine::levels ? pack_required(tree, metrics, options, facts)
                                                : pack(tree, metrics, facts, regions);
   });

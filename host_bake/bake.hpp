@@ -31,6 +31,9 @@ struct BakeOptions {
   double delta_rel =
       0.01;  ///< contact tolerance that the metrics are made for, relative to the radius
   SupportReading support = SupportReading::one_ring;
+  /// The surface may first be made coarser, by at most this share of the radius (reduce.hpp), which
+  /// the image records; 0: it is baked as it is.
+  double max_deviation_rel = 0;
   /// Stop rules of simplification, recorded in the image. The first that applies ends it.
   SimplifyOptions stop;
   double stop_deviation_rel = 0;  ///< no level whose s passes this; 0: no such rule
@@ -50,6 +53,7 @@ struct BakeReport {
   std::map<std::string, std::uint64_t> rejected;  ///< attempts refused, by reason
   std::size_t peak_bytes = 0;                     ///< resident set, high-water mark of the process
   unsigned threads = 0;
+  std::size_t mesh_triangles = 0;  ///< before the surface was made coarser
 };
 
 /// Bakes a mesh that require_bakeable() let pass. The bytes depend on mesh, check and options only,

@@ -49,16 +49,26 @@ double largest_unit_m(std::span<const levels::PairState> pairs) noexcept {
   return unit;
 }
 
+/// What no query can know: numbers are rounded, and a baked surface may be coarser than its mesh.
+double least_error_m(std::span<const levels::PairState> pairs) noexcept {
+  double deviation_m = 0;
+  for (const levels::PairState& pair : pairs) {
+    const double of_pair_m = pair.deviation * pair.unit_m;
+    deviation_m = of_pair_m > deviation_m ? of_pair_m : deviation_m;
+  }
+  return deviation_m + kNumericalError * largest_unit_m(pairs);
+}
+
 /// What both queries say of their answer.
 template <class QueryResult>
 Certificate certify(const QueryResult& found, double upper_m, double delta_m,
-                    double unit_m) noexcept {
+                    double least_error_m) noexcept {
   Certificate c;
   const double nearest =
       found.contacts > 0 && found.min_distance_m < delta_m ? found.min_distance_m : delta_m;
   const double below = found.unresolved_lower_m < nearest ? nearest - found.unresolved_lower_m : 0;
   const double above = found.contacts > 0 && upper_m > nearest ? upper_m - nearest : 0;
-  c.error_bound_m = (below > above ? below : above) + found.capped_gap_m + kNumericalError * unit_m;
+  c.error_bound_m = (below > above ? below : above) + found.capped_gap_m + least_error_m;
   c.s_worst = found.s_worst;
   c.truncated_by_time = found.truncated_by_time;
   c.truncated_by_units = found.truncated_by_units;
@@ -83,7 +93,7 @@ Found find_by_levels(Engine& engine, Meter& meter) noexcept {
     follow(engine.levels.query_ns, meter.refined_ns() / found.queries);
   }
   return {found.contacts, found.min_distance_m, engine.levels.tree.front().size(), found.queries,
-          certify(found, found.upper_m, engine.settings.delta_m, largest_unit_m(engine.states))};
+          certify(found, found.upper_m, engine.settings.delta_m, least_error_m(engine.states))};
 }
 
 Found find_by_regions(Engine& engine, Meter& meter) noexcept {
@@ -96,7 +106,7 @@ Found find_by_regions(Engine& engine, Meter& meter) noexcept {
   const regions::QueryResult found = regions::query(engine.regions, demand, meter);
   engine.tally.lap(Stage::refine, meter);
   Found out{found.contacts, found.min_distance_m, found.near_regions, found.queries,
-            certify(found, found.min_distance_m, s.delta_m, largest_unit_m(engine.states))};
+            certify(found, found.min_distance_m, s.delta_m, least_error_m(engine.states))};
   out.certificate.force_bound_N = s.stiffness_N_per_m * found.open_m;
   return out;
 }

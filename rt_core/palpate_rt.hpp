@@ -148,12 +148,14 @@ struct Contact {
 /// What is certain about the answer.
 struct Certificate {
   double error_bound_m = 0;  ///< the true least distance is within this of the reported one; where
-                             ///< no contact is reported, of delta
+                             ///< no contact is reported, of delta. It counts what detail was left
+                             ///< out before baking (Header::source_deviation_rel)
   double s_worst =
       0;  ///< largest weighted surface deviation left unrefined, relative to the radius
   /// Regions engine: the sizes of the regions' penalty forces, summed, are within this of the true
-  /// ones: stiffness times the sum of all open intervals below delta. Depths of overlap and shares
-  /// (Contact::share) are not covered.
+  /// ones: stiffness times the sum of all open intervals below delta, each wider by what was left
+  /// out of both bodies before baking, of which no tolerance takes account. Depths of overlap and
+  /// shares (Contact::share) are not covered.
   double force_bound_N = 0;
   std::uint64_t units_used = 0;
   bool truncated_by_time = false;    ///< the clock ended refinement

@@ -173,6 +173,8 @@ void begin(levels::PairState& pair, const BodyPair& bodies) noexcept {
   pair.unit_m = radius_a > radius_b ? radius_a : radius_b;
   pair.scale_a = radius_a / pair.unit_m;
   pair.scale_b = radius_b / pair.unit_m;
+  pair.deviation = pair.scale_a * static_cast<double>(pair.image_a->header->source_deviation_rel) +
+                   pair.scale_b * static_cast<double>(pair.image_b->header->source_deviation_rel);
 }
 
 void begin_levels(levels::QueryMemory& memory) noexcept {

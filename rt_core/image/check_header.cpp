@@ -28,8 +28,7 @@ bool flag(const Header& header, HeaderFlag f) noexcept {
 }
 
 bool reserved_clear(const Header& header) noexcept {
-  std::uint32_t bits = header.reserved0 | (header.flags & ~kKnownFlags);
-  for (const std::uint32_t r : header.reserved1) bits |= r;
+  std::uint32_t bits = header.reserved0 | header.reserved1 | (header.flags & ~kKnownFlags);
   for (const std::uint8_t r : header.reserved2) bits |= r;
   return bits == 0;
 }
@@ -50,7 +49,9 @@ bool numbers_sound(const Header& header) noexcept {
          within(header.delta_rel, 0.0f, kMaxLength) &&
          within(header.stop_resolution, 0.0f, kLargest) &&
          within(header.stop_deviation_rel, 0.0f, kMaxLength) &&
-         within(header.s0_min, 0.0f, kLargest) && within(header.partner_area, 0.0f, kLargest);
+         within(header.s0_min, 0.0f, kLargest) && within(header.partner_area, 0.0f, kLargest) &&
+         within(header.source_deviation_rel, 0.0f,
+                header.format_minor >= kSourceDeviationSince ? kMaxLength : 0.0f);
 }
 
 // An image without the original surface says what it serves; one with it serves everything.

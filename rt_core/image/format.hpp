@@ -20,8 +20,9 @@ namespace palpate::image {
 
 inline constexpr std::uint8_t kMagic[8] = {0x89, 'P', 'A', 'L', 'P', '\r', '\n', 0x1a};
 inline constexpr std::uint16_t kFormatMajor = 1;        ///< another major number is refused
-inline constexpr std::uint16_t kFormatMinor = 1;        ///< a newer minor number still loads
+inline constexpr std::uint16_t kFormatMinor = 2;        ///< a newer minor number still loads
 inline constexpr std::uint16_t kPatchNormalsSince = 1;  ///< minor version
+inline constexpr std::uint16_t kSourceDeviationSince = 2;
 inline constexpr std::uint32_t kByteOrderMark = 0x01020304;
 inline constexpr std::size_t kAlignment = 64;
 inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< "no such index"
@@ -128,7 +129,11 @@ struct Header {
   /// Finest levels that were left out, the original surface with them; 0: level 0 is the original
   /// surface. With s0_min and partner_area, what the image still serves.
   std::uint32_t dropped_levels;
-  std::uint32_t reserved1[2];
+  /// No point of the surface that was baked is farther than this from the mesh of source_sha256,
+  /// nor the other way round, relative to the radius: detail may be left out before baking. 0: it
+  /// is that mesh. What engines prove holds of the surface baked; their certificates add this.
+  float source_deviation_rel;
+  std::uint32_t reserved1;
 
   Section sections[kSectionSlots];
   std::uint8_t reserved2[40];

@@ -22,6 +22,8 @@ struct PairState {
   double unit_m = 1;   ///< metres
   double scale_a = 1;  ///< units of a piece coordinate of a
   double scale_b = 1;
+  /// The bodies' distance is within this of that of the surfaces that were baked.
+  double deviation = 0;
   std::uint32_t root = 0;  ///< node of the two root pieces
 
   // This tick.

@@ -148,9 +148,14 @@ class Query {
     const auto regions = pair.image_a->regions;
     for (std::uint32_t i = 0; i < regions.size(); ++i) {
       const RegionState& state = memory_.states[first + i];
-      if (static_cast<double>(state.lower) - way_since(state, pair) >= pair.delta) continue;
+      const double far = pair.delta + pair.deviation;
+      if (static_cast<double>(state.lower) - way_since(state, pair) >= far) continue;
       const double moved_by = moved_since(state, pair, i);
-      if (static_cast<double>(state.lower) - moved_by >= pair.delta) continue;
+      const double lower = static_cast<double>(state.lower) - moved_by;
+      if (lower >= pair.delta) {
+        if (lower < far) result_.open_m += (far - lower) * pair.unit_m;
+        continue;
+      }
       Active& item = memory_.active[count_++];
       item.moved = static_cast<float>(moved_by);
       item.rest = float_below(static_cast<double>(state.rest) - moved_by);
@@ -447,6 +452,15 @@ class Query {
     return static_cast<double>(item.width) * pair_of(item).unit_m;
   }
 
+  /// By how much wider its interval is below delta for the bodies as they were before detail was
+  /// left out of them.
+  double left_out_m(const Active& item) noexcept {
+    const PairState& pair = pair_of(item);
+    const double below_delta = pair.delta - static_cast<double>(upper_of(item));
+    const double above = below_delta < pair.deviation ? below_delta : pair.deviation;
+    return (pair.deviation + above) * pair.unit_m;
+  }
+
   /// Searches a region until its interval is at most tolerance wide.
   /// @param first  or until a pair nearer than delta is known
   void close(Active& item, float tolerance, bool first = false) noexcept {
@@ -507,7 +521,7 @@ class Query {
       if (lower < pair.delta && lower_m < result_.unresolved_lower_m) {
         result_.unresolved_lower_m = lower_m;
       }
-      result_.open_m += width_m(item);
+      result_.open_m += width_m(item) + left_out_m(item);
       const double size = static_cast<double>(pair.image_a->regions[item.region].radius);
       if (item.width > kClosed && size > result_.s_worst) result_.s_worst = size;
     }

@@ -68,7 +68,8 @@ struct QueryResult {
   double min_distance_m = 0;      ///< least over contacts; infinity without contacts
   double unresolved_lower_m = 0;  ///< least lower bound of a region that may be nearer than delta;
                                   ///< infinity where there is none
-  double open_m = 0;              ///< sum over regions of min(upper, delta) - lower
+  double open_m = 0;              ///< sum over regions of min(upper, delta) - lower, of bodies as
+                                  ///< they were before detail was left out of them
   double capped_gap_m = 0;        ///< no iteration cap leaves a gap here
   double s_worst = 0;             ///< largest radius of a region that is not resolved, relative
   std::uint64_t near_regions = 0;

@@ -43,7 +43,7 @@ TEST(BakeCommand, Image_and_report_agree) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = nlohmann::json::parse(test::read_file(report));
   EXPECT_EQ(json["bytes"], std::filesystem::file_size(image));
-  EXPECT_EQ(json["format_version"], "1.1");
+  EXPECT_EQ(json["format_version"], "1.2");
   EXPECT_NEAR(json["radius_m"], 0.0145, 0.0005);
   EXPECT_EQ(json["source"]["triangles"], 6);
   EXPECT_EQ(json["source"]["sha256"].get<std::string>().size(), 64u);
@@ -78,6 +78,25 @@ TEST(BakeCommand, Repair_is_asked_for_and_told) {
   EXPECT_NE(mended.out.find("repair: "), std::string::npos) << mended.out;
 }
 
+TEST(BakeCommand, Detail_is_left_out_where_asked_and_told) {
+  const test::TemporaryFolder folder;
+  const std::string mesh = folder.path() / "ball.ply", image = folder.path() / "ball.palp",
+                    report = folder.path() / "r.json";
+  ASSERT_EQ(
+      test::run({PALPATE_EXECUTABLE, "make-model", "golf_ball", "--triangles", "3000", "-o", mesh})
+          .status,
+      0);
+  const test::Outcome outcome =
+      bake({mesh, "-o", image, "--max-deviation", "0.01", "--report", report});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("detail: "), std::string::npos) << outcome.out;
+  const auto json = nlohmann::json::parse(test::read_file(report));
+  EXPECT_LT(json["source"]["triangles"], json["mesh_triangles"]);
+  EXPECT_GT(json["source"]["deviation_rel"], 0.0);
+  EXPECT_LE(json["source"]["deviation_rel"], 0.0101);
+  EXPECT_TRUE(json["seconds"].contains("reduce"));
+}
+
 TEST(BakeCommand, What_is_wrong_is_refused_with_its_status) {
   const test::TemporaryFolder folder;
   const std::string mesh = folder.write("p.off", kPyramid), image = folder.path() / "p.palp";
@@ -88,6 +107,8 @@ TEST(BakeCommand, What_is_wrong_is_refused_with_its_status) {
   expect_refused(bake({mesh, "-o", image, "--engine", "neither"}), 2, "--engine");
   expect_refused(bake({mesh, "-o", image, "--s0-min", "0"}), 2, "--s0-min");
   expect_refused(bake({mesh, "-o", image, "--stop-resolution", "-1"}), 2, "--stop-resolution");
+  expect_refused(bake({mesh, "-o", image, "--max-deviation", "0.2"}), 2, "--max-deviation");
+  expect_refused(bake({mesh, "-o", image, "--max-deviation", "nan"}), 2, "--max-deviation");
   expect_refused(bake({mesh, "-o", image, "--support-area", "none"}), 2, "--support-area");
   expect_refused(bake({mesh, "-o", image, "--max-bytes", "100"}), 3, "--s0-min");
   expect_refused(bake({folder.path() / "none.off", "-o", image}), 3, "none.off");

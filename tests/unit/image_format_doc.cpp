@@ -108,6 +108,7 @@ TEST(FormatPage, Header_is_the_struct) {
                                        PALPATE_FIELD(H, max_valence),
                                        PALPATE_FIELD(H, leaf_pieces),
                                        PALPATE_FIELD(H, dropped_levels),
+                                       PALPATE_FIELD(H, source_deviation_rel),
                                        PALPATE_FIELD(H, reserved1),
                                        PALPATE_FIELD(H, sections),
                                        PALPATE_FIELD(H, reserved2)};

@@ -177,7 +177,7 @@ TEST(Validate, NewerMinorVersion_loads_and_its_unknown_parts_are_ignored) {
   EXPECT_EQ(status_with_header([](H& h) { h.format_minor = image::kFormatMinor + 1; }), Status::ok);
   EXPECT_EQ(status_with_header([](H& h) {
               h.format_minor = image::kFormatMinor + 1;
-              h.reserved0 = h.reserved1[1] = 7;
+              h.reserved0 = h.reserved1 = 7;
               h.reserved2[39] = 1;
               h.flags |= 0x80000000u;
             }),
@@ -212,7 +212,14 @@ TEST(Validate, HeaderFields_out_of_range_are_refused) {
       [](H& h) { h.source_boundary_edges = 1; },
       [](H& h) { h.source_crossings = 1; },
       [](H& h) { h.reserved0 = 1; },
-      [](H& h) { h.reserved1[1] = 1; },
+      [](H& h) { h.reserved1 = 1; },
+      [](H& h) { h.source_deviation_rel = -0.1f; },
+      [](H& h) { h.source_deviation_rel = 4.1f; },
+      [](H& h) { h.source_deviation_rel = kNanF; },
+      [](H& h) {
+        h.format_minor = image::kSourceDeviationSince - 1;
+        h.source_deviation_rel = 0.01f;
+      },
       [](H& h) { h.reserved2[0] = 1; },
       [](H& h) { h.centre_m[1] = kNan; },
       [](H& h) { h.centre_m[2] = 1e16; },

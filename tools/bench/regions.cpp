@@ -4,14 +4,17 @@
 //   bench_regions [TICKS [SCENE[:DELTA]...]]     scenes: jaws, tips, golf, socket, screw, joint;
 //                                                default: all, with 0.01, 0.02 and 0.05
 //   bench_regions TICKS growth                   jaws with more and more triangles at one motion
+//   bench_regions TICKS detail                   the same with detail left out before baking
+//   bench_regions TICKS instructions             jaws by each instruction set of this processor
 //
 // A row (CSV) for each scene, contact tolerance (relative to the radius) and mode: exact with all
 // state kept (warm) or forgotten at each tick (cold), with a tolerance of force, and under budgets
 // of time or of work units. Times are of the thread's own processor clock, so that a busy machine
 // shows in the caches only; units are those of the engine (TickResult::queries), counted and not
 // timed; settled_units are of the second half of the ticks. force_nrmse is against the exact ticks,
-// of their largest force, over all ticks but the first ten; bound_of_force is the median of the
-// certified error over that force; force_step is the largest change of force from tick to tick.
+// of their largest force, over all ticks but the first ten; felt_nrmse is that of the force on
+// display, where force_nrmse sums over regions; bound_of_force is the median of the certified error
+// over the largest sum; force_step is the largest change of that sum from tick to tick.
 // Where FCL is installed, its distance of the same meshes (one least distance, OBBRSS) is asked
 // between the exact ticks, pose by pose; of_fcl is our time by its time, summed over the run.
 #include <algorithm>
@@ -68,7 +71,8 @@ double percentile(std::vector<double> values, double share) {
 
 struct Run {
   std::vector<double> us, contacts, near, units, bound_N;
-  std::vector<Vec3d> force_N;
+  std::vector<Vec3d> force_N;  ///< summed over regions
+  std::vector<Vec3d> felt_N;
   double fcl_us = 0;  ///< mean; 0: not asked
 };
 
@@ -115,6 +119,7 @@ Run run(Bench& bench, const std::vector<Pose>& poses, const Plan& plan) {
     out.units.push_back(static_cast<double>(r.queries));
     out.bound_N.push_back(r.certificate.force_bound_N);
     out.force_N.push_back(summed_force(bench.settings(), r));
+    out.felt_N.push_back(r.wrench.force_N);
     if (plan.peer != nullptr) {
       out.fcl_us += peer_us(*plan.peer, pose) / static_cast<double>(poses.size());
     }
@@ -132,12 +137,12 @@ void print_row(const char* scene, double delta_rel, const Plan& plan, const Run&
   }
   const std::vector<double> settled(r.units.begin() + std::ptrdiff_t(r.units.size() / 2),
                                     r.units.end());
-  std::printf("%s,%g,%s,%g,%g,%g,%.1f,%.1f,%.1f,%.0f,%.0f,%.1f,%.1f,%.4f,%.4f,%.4f", scene,
+  std::printf("%s,%g,%s,%g,%g,%g,%.1f,%.1f,%.1f,%.0f,%.0f,%.1f,%.1f,%.4f,%.4f,%.4f,%.4f", scene,
               delta_rel, plan.cold ? "cold" : "warm", plan.budget_us, double(plan.budget_units),
               plan.tolerance_N, mean(r.us), percentile(r.us, 0.5), percentile(r.us, 0.99),
               mean(r.units), mean(settled), mean(r.near), mean(r.contacts),
-              nrmse(r.force_N, exact.force_N, kSettled), percentile(r.bound_N, 0.5) / peak,
-              step / peak);
+              nrmse(r.force_N, exact.force_N, kSettled), nrmse(r.felt_N, exact.felt_N, kSettled),
+              percentile(r.bound_N, 0.5) / peak, step / peak);
   if (r.fcl_us > 0) {
     std::printf(",%.1f,%.3f\n", r.fcl_us, mean(r.us) / r.fcl_us);
   } else {
@@ -200,6 +205,67 @@ void measure_growth(int ticks) {
   }
 }
 
+/// The same with detail left out of both before baking, against those that have all of it.
+void measure_detail(int ticks) {
+  constexpr double kDeltaRel = 0.02;
+  constexpr double kTolerance_N = 3;
+  const SceneName& jaws = kScenes[0];
+  std::vector<Pose> poses;
+  double delta = 0;
+  for (const std::size_t triangles : {0u, 160'000u, 640'000u}) {
+    std::optional<Run> truth;
+    for (const double deviation : {0.0, 2.5e-4, 5e-4, 1e-3, 2e-3}) {
+      const Body a(jaws.a, kDeltaRel, bake::ForEngine::regions, triangles, deviation);
+      const Body b(jaws.b, kDeltaRel, bake::ForEngine::regions, triangles, deviation);
+      if (poses.empty()) {
+        delta = kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
+        poses = motion(jaws, a, b, delta, ticks);
+      }
+      Bench exact_bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
+      const Settings loose{
+          .engine = EngineKind::regions, .delta_m = delta, .force_tolerance_N = kTolerance_N};
+      Bench loose_bench(a, b, loose);
+      char name[64];
+      std::snprintf(name, sizeof name, "jaws_%zu_%zu_%g", 2 * triangles,
+                    a.view.region_triangles.size() + b.view.region_triangles.size(), deviation);
+      for (const Plan& plan : {Plan{}, Plan{.cold = true}, Plan{.budget_units = 2500}}) {
+        const Run found = run(exact_bench, poses, plan);
+        if (!truth) truth = found;
+        print_row(name, kDeltaRel, plan, found, *truth);
+      }
+      for (const bool cold : {false, true}) {
+        const Plan plan{.cold = cold, .tolerance_N = kTolerance_N};
+        print_row(name, kDeltaRel, plan, run(loose_bench, poses, plan), *truth);
+      }
+    }
+  }
+}
+
+/// By each table of kernels that runs here, narrowest first, turn by turn.
+void measure_instructions(int ticks) {
+  constexpr double kDeltaRel = 0.02;
+  constexpr int kTurns = 5;
+  const SceneName& jaws = kScenes[0];
+  const Body a(jaws.a, kDeltaRel, bake::ForEngine::regions);
+  const Body b(jaws.b, kDeltaRel, bake::ForEngine::regions);
+  const double delta = kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
+  const std::vector<Pose> poses = motion(jaws, a, b, delta, ticks);
+  const regions::Kernels* tables[3] = {};
+  const std::uint32_t count = regions::all_kernels(tables);
+  Bench bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
+  std::optional<Run> exact;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      bench.use(*tables[i]);
+      for (const bool cold : {false, true}) {
+        const Run found = run(bench, poses, {.cold = cold});
+        if (!exact) exact = found;
+        print_row(tables[i]->name, kDeltaRel, {.cold = cold}, found, *exact);
+      }
+    }
+  }
+}
+
 /// The tolerance that an argument asks for: 0 for all, nothing where it names another scene.
 std::optional<double> asked(const SceneName& scene, const char* argument) {
   const std::size_t length = std::strlen(scene.name);
@@ -225,10 +291,19 @@ int main(int argc, char** argv) {
   const int ticks = argc > 1 ? std::max(20, std::atoi(argv[1])) : 300;
   std::printf(
       "scene,delta_rel,mode,budget_us,budget_units,tolerance_N,mean_us,median_us,p99_us,units,"
-      "settled_units,near_regions,contacts,force_nrmse,bound_of_force,force_step,fcl_us,of_fcl\n");
-  if (argc == 3 && std::strcmp(argv[2], "growth") == 0) {
-    measure_growth(ticks);
-    return 0;
+      "settled_units,near_regions,contacts,force_nrmse,felt_nrmse,bound_of_force,force_step,fcl_us,"
+      "of_fcl\n");
+  constexpr struct {
+    const char* name;
+    void (*measure)(int ticks);
+  } kOthers[] = {{"growth", measure_growth},
+                 {"detail", measure_detail},
+                 {"instructions", measure_instructions}};
+  for (const auto& other : kOthers) {
+    if (argc == 3 && std::strcmp(argv[2], other.name) == 0) {
+      other.measure(ticks);
+      return 0;
+    }
   }
   for (const SceneName& scene : kScenes) {
     if (argc <= 2) measure_asked(scene, 0, ticks);

@@ -7,6 +7,7 @@
 
 #include "host_bake/mesh/check.hpp"
 #include "host_bake/models/models.hpp"
+#include "rt_core/engine.hpp"
 
 namespace palpate::bench {
 namespace {
@@ -82,11 +83,13 @@ Pose pressed(Bench& wide, const Body& a, double delta, int i) {
 
 }  // namespace
 
-Body::Body(const char* model, double delta_rel, bake::ForEngine engine, std::size_t triangles) {
+Body::Body(const char* model, double delta_rel, bake::ForEngine engine, std::size_t triangles,
+           double max_deviation) {
   const bake::Mesh mesh = bake::make_model(model, triangles);
   bake::BakeOptions options;
   options.engine = engine;
   options.delta_rel = delta_rel;
+  options.max_deviation_rel = max_deviation;
   bake::BakeReport report;
   image =
       std::make_unique<bake::AlignedCopy>(bake::bake(mesh, bake::check(mesh), options, {}, report));
@@ -104,6 +107,12 @@ void Bench::forget() {
   if (create(scene(), settings_, kLimits, {memory_.get(), bytes_}, engine_) != Status::ok) {
     std::abort();
   }
+  if (kernels_ != nullptr) engine_->regions.kernels = kernels_;
+}
+
+void Bench::use(const regions::Kernels& kernels) {
+  kernels_ = &kernels;
+  forget();
 }
 
 TickResult Bench::tick_at(const Pose& pose, const Budget& budget) {

@@ -11,6 +11,7 @@
 #include "host_bake/bake.hpp"
 #include "host_bake/pack/aligned.hpp"
 #include "rt_core/palpate_rt.hpp"
+#include "rt_core/regions/kernels.hpp"
 
 namespace palpate::bench {
 
@@ -24,8 +25,10 @@ struct SceneName {
 
 /// A model, baked in memory.
 struct Body {
-  /// @param triangles  0: the model's default
-  Body(const char* model, double delta_rel, bake::ForEngine engine, std::size_t triangles = 0);
+  /// @param triangles      0: the model's default
+  /// @param max_deviation  detail left out, relative to the radius
+  Body(const char* model, double delta_rel, bake::ForEngine engine, std::size_t triangles = 0,
+       double max_deviation = 0);
   std::unique_ptr<bake::AlignedCopy> image;
   ImageView view;
 };
@@ -35,6 +38,8 @@ class Bench {
  public:
   Bench(const Body& a, const Body& b, const Settings& settings);
   void forget();
+  /// Regions engine: not the widest instructions of this processor.
+  void use(const regions::Kernels& kernels);
   /// b stays at its origin.
   TickResult tick_at(const Pose& pose, const Budget& budget = {});
   [[nodiscard]] const Settings& settings() const { return settings_; }
@@ -48,6 +53,7 @@ class Bench {
   std::vector<ImageView> views_;
   std::vector<BodyPair> pairs_{{0, 1}};
   Settings settings_;
+  const regions::Kernels* kernels_ = nullptr;  ///< null: the widest
   std::size_t bytes_ = 0;
   std::unique_ptr<std::byte[], Free> memory_;
   Engine* engine_ = nullptr;

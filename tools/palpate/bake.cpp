@@ -51,7 +51,7 @@ bake::ForEngine engine_of(const Options& options) {
   if (!options.engine.empty() && reduced) {
     throw Failure(kUsage, "regions need the original surface, so nothing can be left out",
                   "--engine " + options.engine,
-                  "use --engine levels with --s0-min and --max-bytes");
+                  "use --engine levels with --s0-min and --max-bytes, or --max-deviation");
   }
   if (options.engine == "regions") return bake::ForEngine::regions;
   return reduced ? bake::ForEngine::levels : bake::ForEngine::both;
@@ -95,11 +95,18 @@ std::string report_text(const Baked& baked, const ImageView& image) {
   json["threads"] = baked.report.threads;
   json["rejected"] = baked.report.rejected;
   json["repairs"] = baked.repairs;
+  json["mesh_triangles"] = baked.report.mesh_triangles;
   return json.dump(2) + "\n";
 }
 
 void print(const Options& options, const Baked& baked, const ImageView& image) {
   for (const std::string& line : baked.repairs) std::cout << "repair: " << line << "\n";
+  const std::size_t before = baked.report.mesh_triangles;
+  if (before != image.header->source_triangles) {
+    std::cout << "detail: " << before << " triangles to " << image.header->source_triangles
+              << ", within " << static_cast<double>(image.header->source_deviation_rel)
+              << " of the radius\n";
+  }
   const double seconds =
       std::accumulate(baked.report.seconds.begin(), baked.report.seconds.end(), 0.0,
                       [](double sum, const auto& stage) { return sum + stage.second; });
@@ -143,6 +150,12 @@ void add_stop_rules(CLI::App& command, bake::BakeOptions& options) {
 }
 
 void add_requirements(CLI::App& command, bake::BakeOptions& options) {
+  command
+      .add_option("--max-deviation", options.max_deviation_rel,
+                  "Leave out detail first: bake a coarser surface, no farther than this share of "
+                  "the radius from the mesh; 0: the mesh itself")
+      ->check(number_between(0, 0.1))
+      ->capture_default_str();
   command
       .add_option("--s0-min", options.s0_min,
                   "Leave out the levels that no threshold s0 from this up can reach")

@@ -63,6 +63,7 @@ nlohmann::json image_json(const ImageView& image, std::size_t engine_bytes) {
             {"components", h.source_components},
             {"boundary_edges", h.source_boundary_edges},
             {"crossings", h.source_crossings},
+            {"deviation_rel", h.source_deviation_rel},
             {"sha256", hex(h.source_sha256)}}},
           {"content_sha256", hex(h.content_sha256)},
           {"delta_rel", h.delta_rel},

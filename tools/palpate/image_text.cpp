@@ -39,6 +39,10 @@ void append_source(std::string& out, const image::Header& h) {
   if (flag(h, image::HeaderFlag::self_crossing)) {
     append(out, ", %u pairs of faces cross", h.source_crossings);
   }
+  if (h.source_deviation_rel > 0) {
+    append(out, ", within %.3g of the radius of the mesh read",
+           static_cast<double>(h.source_deviation_rel));
+  }
   out += flag(h, image::HeaderFlag::repaired) ? ", repaired before baking\n" : "\n";
   append_hash(out, "  SHA-256      ", h.source_sha256);
 }
