@@ -155,7 +155,7 @@ class Reduction {
       if (static_cast<double>(bad) > kFew * static_cast<double>(tried.mesh.faces.size())) {
         error /= 2;
       } else {
-        keep_bad(tried.mesh);
+        keep_bad(tried.mesh, attempt);
       }
     }
     return {.mesh = mesh_, .check = check_, .deviation = 0};
@@ -184,14 +184,14 @@ class Reduction {
     return faces;
   }
 
-  /// What bad faces have come from stays as it is.
-  void keep_bad(const NormalMesh& tried) {
+  /// What bad faces have come from stays as it is, farther around them from attempt to attempt.
+  void keep_bad(const NormalMesh& tried, int attempt) {
     for (const std::uint32_t f : bad_of_mesh_) {
       for (const std::uint32_t v : mesh_.faces[f]) kept_[v] = 1;
     }
     if (bad_of_tried_.empty()) return;
     const NearestSurface bad(faces_of(tried, bad_of_tried_));
-    const double reach = 2 * most_;
+    const double reach = (2 + attempt) * most_;
     for (std::size_t v = 0; v < mesh_.points.size(); ++v) {
       if (bad.nearest(vec(mesh_.points[v])).squared_distance < reach * reach) kept_[v] = 1;
     }

@@ -2,6 +2,12 @@
 // Overlaps of detailed surfaces: which way they push, and that they do not kick.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "host_bake/models/models.hpp"
 #include "tests/support/baked_scene.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -122,6 +128,60 @@ TEST(RegionsOverlap, corner_in_a_face_is_pushed_along_its_normal_before_and_afte
   const BakedBody face = baked(std::move(plate), 0.02);
   expect_pushed_along(corner, face, {0, 0, 1});
   expect_pushed_along(face, corner, {0, 0, -1});
+}
+
+/// Jaws in bite, ground to and fro between 0.2 mm apart and 0.2 mm deep.
+std::vector<Pose> ground(BakedScene& scene, double delta_m) {
+  std::vector<Pose> path;
+  double height_m = 0.0015;
+  for (int t = 0; t < 1000; ++t) {
+    const Pose poses[2] = {
+        {{1e-3 * std::sin(0.004 * t), 1e-3 * std::sin(0.0061 * t), height_m}, {}}, {}};
+    const TickResult r = tick_or_fail(*scene.engine, poses);
+    const double distance_m = r.contacts.empty() ? delta_m : r.min_distance_m;
+    height_m -= std::clamp(distance_m - 2e-4 * std::cos(0.01 * t), -3e-5, 3e-5);
+    path.push_back(poses[0]);
+  }
+  return path;
+}
+
+std::vector<Vec3d> forces_along(const std::vector<Pose>& path, BakedScene& scene) {
+  std::vector<Vec3d> forces_N;
+  for (const Pose& pose : path) {
+    const Pose poses[2] = {pose, {}};
+    forces_N.push_back(tick_or_fail(*scene.engine, poses).wrench.force_N);
+  }
+  return forces_N;
+}
+
+/// A region tells its nearest place alone, yet it hardly matters what it is: images for other
+/// contact tolerances have regions of other sizes. The first ones are for this one.
+TEST(RegionsOverlap, force_hardly_depends_on_how_surfaces_are_divided) {
+  constexpr double kDelta_m = 4e-4;
+  constexpr double kMostDifference = 0.05;
+  std::vector<Pose> path;
+  std::vector<Vec3d> first_N;
+  std::size_t regions_before = 0;
+  for (const double made_for : {0.0114, 0.0076, 0.005}) {
+    const BakedBody upper = baked(bake::make_model("jaw_upper", 6000), made_for);
+    const BakedBody lower = baked(bake::make_model("jaw_lower", 6000), made_for);
+    EXPECT_GT(upper.view.regions.size(), 1.5 * double(regions_before));
+    regions_before = upper.view.regions.size();
+    BakedScene scene({upper.view, lower.view}, {{0, 1}}, settings(kDelta_m));
+    if (path.empty()) path = ground(scene, kDelta_m);
+    const std::vector<Vec3d> forces_N = forces_along(path, scene);
+    if (first_N.empty()) first_N = forces_N;
+    double square_N2 = 0;
+    double peak_N = 0;
+    for (std::size_t t = 0; t < path.size(); ++t) {
+      square_N2 += squared_norm(forces_N[t] - first_N[t]) / double(path.size());
+      peak_N = std::max(peak_N, norm(first_N[t]));
+    }
+    EXPECT_GT(peak_N, 0.1);
+    EXPECT_LT(std::sqrt(square_N2), kMostDifference * peak_N) << made_for;
+    RecordProperty("difference_" + std::to_string(upper.view.regions.size()),
+                   std::to_string(std::sqrt(square_N2) / peak_N));
+  }
 }
 
 }  // namespace
