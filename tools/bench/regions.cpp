@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Time and accuracy of the region engine on scenes of two detailed objects.
 //
-//   bench_regions [TICKS [SCENE[:DELTA]...]]     scenes: jaws, tips, golf, socket, screw, joint;
-//                                                default: all, with 0.01, 0.02 and 0.05
+//   bench_regions [TICKS [SCENE[:DELTA[:LEFT_OUT]]...]]
+//                                                scenes: jaws, tips, golf, socket, screw, joint;
+//                                                default: all, with 0.01, 0.02 and 0.05; detail
+//                                                left out before baking, against all of it
 //   bench_regions TICKS growth                   jaws with more and more triangles at one motion
 //   bench_regions TICKS detail                   the same with detail left out before baking
 //   bench_regions TICKS instructions             jaws by each instruction set of this processor
@@ -151,15 +153,13 @@ void print_row(const char* scene, double delta_rel, const Plan& plan, const Run&
   std::fflush(stdout);
 }
 
-void measure(const SceneName& scene, double delta_rel, int ticks) {
-  const Body a(scene.a, delta_rel, bake::ForEngine::regions);
-  const Body b(scene.b, delta_rel, bake::ForEngine::regions);
-  const double delta = delta_rel * std::min(a.view.header->radius_m, b.view.header->radius_m);
-  const std::vector<Pose> poses = motion(scene, a, b, delta, ticks);
-  const Peer peer(bake::make_model(scene.a), bake::make_model(scene.b));
-  Bench bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
-  const Run exact = run(bench, poses, {.peer = &peer});
-  print_row(scene.name, delta_rel, {}, exact, exact);
+/// What an argument asks for.
+struct Asked {
+  double delta_rel = 0;      ///< 0: all
+  double max_deviation = 0;  ///< of both bodies
+};
+
+std::vector<Plan> plans_of_a_scene() {
   std::vector<Plan> plans{{.cold = true}};
   for (const double budget_us : {50.0, 100.0, 250.0, 500.0}) {
     plans.push_back({.budget_us = budget_us});
@@ -169,7 +169,30 @@ void measure(const SceneName& scene, double delta_rel, int ticks) {
     plans.push_back({.budget_units = units});
     plans.push_back({.cold = true, .budget_units = units});
   }
-  for (const Plan& plan : plans) {
+  return plans;
+}
+
+void measure(const SceneName& scene, const Asked& asked, int ticks) {
+  const double delta_rel = asked.delta_rel;
+  const Body a(scene.a, delta_rel, bake::ForEngine::regions);
+  const Body b(scene.b, delta_rel, bake::ForEngine::regions);
+  const double delta = delta_rel * std::min(a.view.header->radius_m, b.view.header->radius_m);
+  const std::vector<Pose> poses = motion(scene, a, b, delta, ticks);
+  const Peer peer(bake::make_model(scene.a), bake::make_model(scene.b));
+  Bench bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
+  const Run exact = run(bench, poses, {.peer = &peer});
+  print_row(scene.name, delta_rel, {}, exact, exact);
+  if (asked.max_deviation > 0) {
+    const Body less_a(scene.a, delta_rel, bake::ForEngine::regions, 0, asked.max_deviation);
+    const Body less_b(scene.b, delta_rel, bake::ForEngine::regions, 0, asked.max_deviation);
+    Bench less(less_a, less_b, bench.settings());
+    print_row(scene.name, delta_rel, {}, run(less, poses, {}), exact);
+    for (const Plan& plan : plans_of_a_scene()) {
+      print_row(scene.name, delta_rel, plan, run(less, poses, plan), exact);
+    }
+    return;
+  }
+  for (const Plan& plan : plans_of_a_scene()) {
     print_row(scene.name, delta_rel, plan, run(bench, poses, plan), exact);
   }
 }
@@ -266,21 +289,25 @@ void measure_instructions(int ticks) {
   }
 }
 
-/// The tolerance that an argument asks for: 0 for all, nothing where it names another scene.
-std::optional<double> asked(const SceneName& scene, const char* argument) {
+/// Nothing where it names another scene.
+std::optional<Asked> asked(const SceneName& scene, const char* argument) {
   const std::size_t length = std::strlen(scene.name);
   if (std::strncmp(argument, scene.name, length) != 0) return std::nullopt;
-  if (argument[length] == '\0') return 0.0;
+  Asked out;
+  if (argument[length] == '\0') return out;
   if (argument[length] != ':') return std::nullopt;
-  return std::atof(argument + length + 1);
+  out.delta_rel = std::atof(argument + length + 1);
+  const char* second = std::strchr(argument + length + 1, ':');
+  if (second != nullptr) out.max_deviation = std::atof(second + 1);
+  return out;
 }
 
-void measure_asked(const SceneName& scene, double delta_rel, int ticks) {
-  if (delta_rel > 0) {
-    measure(scene, delta_rel, ticks);
+void measure_asked(const SceneName& scene, const Asked& asked, int ticks) {
+  if (asked.delta_rel > 0) {
+    measure(scene, asked, ticks);
     return;
   }
-  for (const double each : {0.01, 0.02, 0.05}) measure(scene, each, ticks);
+  for (const double each : {0.01, 0.02, 0.05}) measure(scene, {.delta_rel = each}, ticks);
 }
 
 }  // namespace
@@ -306,9 +333,9 @@ int main(int argc, char** argv) {
     }
   }
   for (const SceneName& scene : kScenes) {
-    if (argc <= 2) measure_asked(scene, 0, ticks);
+    if (argc <= 2) measure_asked(scene, {}, ticks);
     for (int i = 2; i < argc; ++i) {
-      if (const auto delta_rel = asked(scene, argv[i])) measure_asked(scene, *delta_rel, ticks);
+      if (const auto what = asked(scene, argv[i])) measure_asked(scene, *what, ticks);
     }
   }
   return 0;
