@@ -24,6 +24,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -197,39 +198,10 @@ void measure(const SceneName& scene, const Asked& asked, int ticks) {
   }
 }
 
-/// Interlocking jaws at the poses of the default ones, the same contact however fine they are.
-void measure_growth(int ticks) {
-  constexpr double kDeltaRel = 0.02;
-  constexpr double kTolerance_N = 3;
-  const SceneName& jaws = kScenes[0];
-  std::vector<Pose> poses;
-  double delta = 0;
-  for (const std::size_t triangles : {0u, 160'000u, 640'000u}) {
-    const Body a(jaws.a, kDeltaRel, bake::ForEngine::regions, triangles);
-    const Body b(jaws.b, kDeltaRel, bake::ForEngine::regions, triangles);
-    if (poses.empty()) {
-      delta = kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
-      poses = motion(jaws, a, b, delta, ticks);
-    }
-    Bench exact_bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
-    Bench loose_bench(
-        a, b, {.engine = EngineKind::regions, .delta_m = delta, .force_tolerance_N = kTolerance_N});
-    const std::string name =
-        "jaws_" + std::to_string(a.view.region_triangles.size() + b.view.region_triangles.size());
-    const Run exact = run(exact_bench, poses, {});
-    print_row(name.c_str(), kDeltaRel, {}, exact, exact);
-    for (const Plan& plan : {Plan{.cold = true}, Plan{.budget_units = 2500}}) {
-      print_row(name.c_str(), kDeltaRel, plan, run(exact_bench, poses, plan), exact);
-    }
-    for (const bool cold : {false, true}) {
-      const Plan plan{.cold = cold, .tolerance_N = kTolerance_N};
-      print_row(name.c_str(), kDeltaRel, plan, run(loose_bench, poses, plan), exact);
-    }
-  }
-}
-
-/// The same with detail left out of both before baking, against those that have all of it.
-void measure_detail(int ticks) {
+/// Interlocking jaws at the poses of the default ones, the same contact however fine they are, with
+/// detail left out of both before baking; against those that have all of it.
+/// @param deviations  the first is 0
+void measure_finer(int ticks, std::initializer_list<double> deviations) {
   constexpr double kDeltaRel = 0.02;
   constexpr double kTolerance_N = 3;
   const SceneName& jaws = kScenes[0];
@@ -237,7 +209,7 @@ void measure_detail(int ticks) {
   double delta = 0;
   for (const std::size_t triangles : {0u, 160'000u, 640'000u}) {
     std::optional<Run> truth;
-    for (const double deviation : {0.0, 5e-4, 1e-3, 2e-3}) {
+    for (const double deviation : deviations) {
       const Body a(jaws.a, kDeltaRel, bake::ForEngine::regions, triangles, deviation);
       const Body b(jaws.b, kDeltaRel, bake::ForEngine::regions, triangles, deviation);
       if (poses.empty()) {
@@ -263,6 +235,9 @@ void measure_detail(int ticks) {
     }
   }
 }
+
+void measure_growth(int ticks) { measure_finer(ticks, {0}); }
+void measure_detail(int ticks) { measure_finer(ticks, {0, 5e-4, 1e-3, 2e-3}); }
 
 /// By each table of kernels that runs here, narrowest first, turn by turn.
 void measure_instructions(int ticks) {
