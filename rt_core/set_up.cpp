@@ -207,8 +207,9 @@ bool is_fine_enough(const ImageView& image, const ImageView& partner,
 }
 
 bool all_fine_enough(const Engine& engine, const Settings& settings) noexcept {
-  if (settings.engine != EngineKind::levels) return true;
   for (const levels::PairState& pair : engine.states) {
+    if (pair.deviation * pair.unit_m >= settings.delta_m) return false;
+    if (settings.engine != EngineKind::levels) continue;
     if (!is_fine_enough(*pair.image_a, *pair.image_b, settings) ||
         !is_fine_enough(*pair.image_b, *pair.image_a, settings)) {
       return false;

@@ -48,7 +48,7 @@ const char* describe(Status s) noexcept {
     case Status::bad_pose:
       return "a pose is not finite or its quaternion not of unit length";
     case Status::image_too_coarse:
-      return "the scene may need levels that were left out of an image";
+      return "the scene needs detail that was left out of an image";
     case Status::answer_too_old:
       return "no contact query has ended for too long";
   }

@@ -33,7 +33,8 @@ enum class [[nodiscard]] Status : std::uint16_t{
     not_enough_memory = 101,  ///< the memory given is smaller than required_bytes()
     bad_pose = 102,           ///< a pose is not finite or its quaternion not of unit length
     /// the settings may refine to levels that were left out of an image: s0 below its s0_min, a
-    /// partner with smaller support areas than its partner_area, exact, or kappa
+    /// partner with smaller support areas than its partner_area, exact, or kappa; or as much detail
+    /// as delta was left out of two bodies before baking, so that nothing is known of a contact
     image_too_coarse = 103,
     answer_too_old = 104,  ///< contacts are asked for on a thread of their own, and it has stopped
 };

@@ -118,6 +118,18 @@ TEST(EngineDetail, contacts_that_detail_would_give_are_in_the_bound) {
   EXPECT_GE(beyond, 2);
 }
 
+TEST(EngineDetail, tolerance_no_larger_than_what_was_left_out_is_refused) {
+  for (const EngineKind kind : {EngineKind::levels, EngineKind::regions}) {
+    Settings s{.engine = kind, .delta_m = 1.01 * left_out_m()};
+    BakedScene scene({reduced().a.view, reduced().b.view}, {{0, 1}}, s);
+    s.delta_m = 0.99 * left_out_m();
+    EXPECT_EQ(configure(*scene.engine, s), Status::image_too_coarse);
+    Engine* refused = nullptr;
+    EXPECT_EQ(create(scene.scene(), s, {}, scene.memory.span(), refused), Status::image_too_coarse);
+    EXPECT_EQ(refused, nullptr);
+  }
+}
+
 TEST(EngineDetail, bodies_with_all_of_it_certify_as_before) {
   const BakedBody whole(bumpy_ball(24, 32, 1), without_detail(0));
   EXPECT_EQ(whole.view.header->source_deviation_rel, 0);

@@ -82,7 +82,8 @@ void SceneEngine::restart() {
                 config_.file.string(),
                 status == Status::image_too_coarse
                     ? "bake the images without --s0-min and --max-bytes, or with a smaller s0 and "
-                      "--partner-area; palpate inspect says what an image serves"
+                      "--partner-area, and with a --max-deviation far below delta_m; palpate "
+                      "inspect says what an image serves"
                     : "check [engine], [force], [limits] and that the images were baked for this "
                       "engine");
 }
