@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -43,9 +42,6 @@ std::size_t peak_resident_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
-// Of a surface that is made coarser before it is baked: beyond it nothing is left of an object.
-constexpr double kMostDeviation = 0.1;
-
 void require_in_format(const NormalMesh& mesh, const BakeOptions& options) {
   if (options.engine != ForEngine::levels && (options.s0_min > 0 || options.max_bytes > 0)) {
     throw InputRefused("regions need the original surface, so nothing can be left out",
@@ -72,14 +68,6 @@ void require_in_format(const NormalMesh& mesh, const BakeOptions& options) {
   }
 }
 
-// Never rounded down.
-float deviation_fact(double deviation) {
-  const auto f = static_cast<float>(deviation);
-  return static_cast<double>(f) < deviation
-             ? std::nextafter(f, std::numeric_limits<float>::infinity())
-             : f;
-}
-
 image::Header facts_of(const Reduced& surface, const BakeOptions& options) {
   const NormalMesh& mesh = surface.mesh;
   const CheckReport& check = surface.check;
@@ -103,7 +91,7 @@ image::Header facts_of(const Reduced& surface, const BakeOptions& options) {
   facts.stop_resolution = static_cast<float>(options.stop.stop_resolution);
   facts.stop_deviation_rel = static_cast<float>(options.stop_deviation_rel);
   facts.stop_pieces = options.stop.stop_pieces;
-  facts.source_deviation_rel = deviation_fact(surface.deviation);
+  facts.source_deviation_rel = surface.deviation;
   return facts;
 }
 

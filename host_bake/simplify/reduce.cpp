@@ -51,9 +51,9 @@ Surface surface_of(const NormalMesh& mesh) {
   Surface surface;
   std::vector<Surface::Vertex_index> at;
   at.reserve(mesh.points.size());
-  for (const auto& p : mesh.points) {
-    at.push_back(surface.add_vertex(
-        {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])}));
+  for (const auto& point : mesh.points) {
+    const Vec3d p = vec(point);
+    at.push_back(surface.add_vertex({p.x, p.y, p.z}));
   }
   for (const Face& f : mesh.faces) {
     if (surface.add_face(at[f[0]], at[f[1]], at[f[2]]) == Surface::null_face())
@@ -113,9 +113,9 @@ NormalMesh collapsed(const NormalMesh& mesh, double most_error, const Kept& kept
 CheckReport checked(const NormalMesh& mesh) {
   Mesh wide{.points = {}, .faces = mesh.faces};
   wide.points.reserve(mesh.points.size());
-  for (const auto& p : mesh.points) {
-    wide.points.push_back(
-        {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])});
+  for (const auto& point : mesh.points) {
+    const Vec3d p = vec(point);
+    wide.points.push_back({p.x, p.y, p.z});
   }
   return check(wide);
 }
@@ -127,8 +127,8 @@ std::vector<float> face_deviations(const NormalMesh& of, const NearestSurface& t
   return surface_deviations(to, of, patches);
 }
 
-double largest(const std::vector<float>& values) {
-  return static_cast<double>(*std::max_element(values.begin(), values.end()));
+float largest(const std::vector<float>& values) {
+  return *std::max_element(values.begin(), values.end());
 }
 
 /// A part of a mesh.

@@ -10,10 +10,13 @@
 
 namespace palpate::bake {
 
+/// The most that can be left out: beyond it nothing is left of an object.
+inline constexpr double kMostDeviation = 0.1;
+
 struct Reduced {
-  NormalMesh mesh;       ///< centre and radius of the original
-  CheckReport check;     ///< of this mesh; places are in its coordinates
-  double deviation = 0;  ///< Hausdorff distance from the original, at most; 0: it is that
+  NormalMesh mesh;      ///< centre and radius of the original
+  CheckReport check;    ///< of this mesh; places are in its coordinates
+  float deviation = 0;  ///< Hausdorff distance from the original, at most; 0: it is that
 };
 
 /// Collapses edges, those with the least quadric error first (Garland and Heckbert 1997, as in
@@ -24,7 +27,7 @@ struct Reduced {
 ///
 /// An oriented manifold stays one, with as many components and borders.
 /// @param mesh           that require_bakeable() let pass
-/// @param max_deviation  above 0, for radius 1
+/// @param max_deviation  above 0 and at most kMostDeviation, for radius 1
 /// Deterministic, whatever the number of threads. About 20 us a triangle and attempt, of which one
 /// to five are made.
 Reduced reduce(const NormalMesh& mesh, const CheckReport& check, double max_deviation,

@@ -146,9 +146,9 @@ class Query {
     sweep_if_lost(index);
     const std::uint32_t first = memory_.first_state[index];
     const auto regions = pair.image_a->regions;
+    const double far = pair.delta + pair.deviation;
     for (std::uint32_t i = 0; i < regions.size(); ++i) {
       const RegionState& state = memory_.states[first + i];
-      const double far = pair.delta + pair.deviation;
       if (static_cast<double>(state.lower) - way_since(state, pair) >= far) continue;
       const double moved_by = moved_since(state, pair, i);
       const double lower = static_cast<double>(state.lower) - moved_by;

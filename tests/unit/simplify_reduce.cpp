@@ -68,12 +68,12 @@ TEST(Reduce, Both_surfaces_stay_near_one_another) {
       SCOPED_TRACE(std::string(name) + " " + std::to_string(most));
       const Case c = reduced(make_model(name, triangles), most);
       EXPECT_LT(c.after.mesh.faces.size(), c.before.faces.size());
-      EXPECT_LE(c.after.deviation, most);
+      EXPECT_LE(double(c.after.deviation), most);
       const double to = farthest_sample(c.after.mesh, c.before);
       const double from = farthest_sample(c.before, c.after.mesh);
-      EXPECT_LE(std::max(to, from), c.after.deviation);
-      EXPECT_GE(kExcess * std::max(to, from) + kRounding, 0.5 * c.after.deviation);
-      EXPECT_GE(c.after.deviation, 0.3 * most);
+      EXPECT_LE(std::max(to, from), double(c.after.deviation));
+      EXPECT_GE(kExcess * std::max(to, from) + kRounding, 0.5 * double(c.after.deviation));
+      EXPECT_GE(double(c.after.deviation), 0.3 * most);
     }
   }
 }
@@ -91,7 +91,7 @@ TEST(Reduce, Flat_faces_need_few_triangles) {
   const Case c = reduced(test::quartered(test::box(0.02, 0.03, 0.05), 4), 1e-4);
   EXPECT_EQ(c.before.faces.size(), 12u * 256);
   EXPECT_EQ(c.after.mesh.faces.size(), 12u);
-  EXPECT_LE(c.after.deviation, kRounding);
+  EXPECT_LE(double(c.after.deviation), kRounding);
 }
 
 TEST(Reduce, Frame_and_soundness_are_kept) {
@@ -123,7 +123,7 @@ TEST(Reduce, Surfaces_that_nearly_touch_do_not_cross) {
   EXPECT_EQ(c.check.crossings, 0u);
   EXPECT_EQ(c.after.check.crossings, 0u);
   EXPECT_EQ(c.after.check.components, 2u);
-  EXPECT_LE(c.after.deviation, 0.05);
+  EXPECT_LE(double(c.after.deviation), 0.05);
 }
 
 TEST(Reduce, Where_nothing_can_be_left_out_the_mesh_stays_itself) {

@@ -160,7 +160,9 @@ struct Asked {
   double max_deviation = 0;  ///< of both bodies
 };
 
-std::vector<Plan> plans_of_a_scene() {
+/// Forgetting all, and under budgets.
+void print_plans(const SceneName& scene, double delta_rel, Bench& bench,
+                 const std::vector<Pose>& poses, const Run& exact) {
   std::vector<Plan> plans{{.cold = true}};
   for (const double budget_us : {50.0, 100.0, 250.0, 500.0}) {
     plans.push_back({.budget_us = budget_us});
@@ -170,7 +172,9 @@ std::vector<Plan> plans_of_a_scene() {
     plans.push_back({.budget_units = units});
     plans.push_back({.cold = true, .budget_units = units});
   }
-  return plans;
+  for (const Plan& plan : plans) {
+    print_row(scene.name, delta_rel, plan, run(bench, poses, plan), exact);
+  }
 }
 
 void measure(const SceneName& scene, const Asked& asked, int ticks) {
@@ -183,19 +187,15 @@ void measure(const SceneName& scene, const Asked& asked, int ticks) {
   Bench bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
   const Run exact = run(bench, poses, {.peer = &peer});
   print_row(scene.name, delta_rel, {}, exact, exact);
-  if (asked.max_deviation > 0) {
-    const Body less_a(scene.a, delta_rel, bake::ForEngine::regions, 0, asked.max_deviation);
-    const Body less_b(scene.b, delta_rel, bake::ForEngine::regions, 0, asked.max_deviation);
-    Bench less(less_a, less_b, bench.settings());
-    print_row(scene.name, delta_rel, {}, run(less, poses, {}), exact);
-    for (const Plan& plan : plans_of_a_scene()) {
-      print_row(scene.name, delta_rel, plan, run(less, poses, plan), exact);
-    }
+  if (!(asked.max_deviation > 0)) {
+    print_plans(scene, delta_rel, bench, poses, exact);
     return;
   }
-  for (const Plan& plan : plans_of_a_scene()) {
-    print_row(scene.name, delta_rel, plan, run(bench, poses, plan), exact);
-  }
+  const Body less_a(scene.a, delta_rel, bake::ForEngine::regions, 0, asked.max_deviation);
+  const Body less_b(scene.b, delta_rel, bake::ForEngine::regions, 0, asked.max_deviation);
+  Bench less(less_a, less_b, bench.settings());
+  print_row(scene.name, delta_rel, {}, run(less, poses, {}), exact);
+  print_plans(scene, delta_rel, less, poses, exact);
 }
 
 /// Interlocking jaws at the poses of the default ones, the same contact however fine they are, with

@@ -15,6 +15,7 @@
 
 #include "host_bake/mesh/read.hpp"
 #include "host_bake/pack/aligned.hpp"
+#include "host_bake/simplify/reduce.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/image_json.hpp"
 #include "tools/palpate/image_text.hpp"
@@ -154,7 +155,7 @@ void add_requirements(CLI::App& command, bake::BakeOptions& options) {
       .add_option("--max-deviation", options.max_deviation_rel,
                   "Leave out detail first: bake a coarser surface, no farther than this share of "
                   "the radius from the mesh; 0: the mesh itself")
-      ->check(number_between(0, 0.1))
+      ->check(number_between(0, bake::kMostDeviation))
       ->capture_default_str();
   command
       .add_option("--s0-min", options.s0_min,
