@@ -65,6 +65,16 @@ struct Across {
   return {};  // adjacency is not proved where an image is loaded
 }
 
+/// The ways over a triangle from a corner or an edge of it.
+[[nodiscard]] inline Sector sector_at(const ImageView& image, std::uint32_t triangle,
+                                      Feature at) noexcept {
+  const image::RegionTriangle& t = image.region_triangles[triangle];
+  const Vec3d start = corner(t, at.index, 1);
+  const Vec3d from = corner(t, (at.index + 1) % 3, 1) - start;
+  if (at.kind == Feature::Kind::edge) return {triangle, from, -from};
+  return {triangle, from, corner(t, (at.index + 2) % 3, 1) - start};
+}
+
 /// Calls visit(Sector) for every other triangle that holds a point of `triangle`: the one across
 /// its edge, or those around its corner, each way up to a border of the surface and kMostAround in
 /// all.
@@ -78,9 +88,7 @@ void visit_around(const ImageView& image, std::uint32_t triangle, Vec3d point,
   if (at.kind == Feature::Kind::edge) {
     const Across next = across(image, triangle, at.index);
     if (next.triangle == image::kNone) return;
-    const image::RegionTriangle& t = image.region_triangles[next.triangle];
-    const Vec3d along = corner(t, (next.edge + 1) % 3, 1) - corner(t, next.edge, 1);
-    visit(Sector{next.triangle, along, -along});
+    visit(sector_at(image, next.triangle, {Feature::Kind::edge, next.edge}));
     return;
   }
   std::uint32_t left = kMostAround;
@@ -93,10 +101,7 @@ void visit_around(const ImageView& image, std::uint32_t triangle, Vec3d point,
       if (next.triangle == triangle) return;
       here = next.triangle;
       apex = onwards ? (next.edge + 1) % 3 : next.edge;
-      const image::RegionTriangle& t = image.region_triangles[here];
-      const Vec3d point_at = corner(t, apex, 1);
-      visit(Sector{here, corner(t, (apex + 1) % 3, 1) - point_at,
-                   corner(t, (apex + 2) % 3, 1) - point_at});
+      visit(sector_at(image, here, {Feature::Kind::corner, apex}));
     }
   }
 }

@@ -22,19 +22,64 @@ double along_sector(Vec3d direction, const Sector& sector, Vec3d normal) noexcep
   return most > 0 ? most : 0;
 }
 
+/// Each leaves the square of the cosine between two edges of what is wrong: at 45 degrees 1/256.
+constexpr int kTurns = 8;
+
+Feature feature_of(const Place& place) noexcept {
+  return feature_at(place.image.region_triangles[place.triangle], place.point);
+}
+
+/// Turns a direction off the ways on over a surface, one after the other.
+/// @param at     not on a face
+/// @param known  a normal, if any is known. A place that is on two features to rounding may be
+///               taken for the one that it is none of: it is not turned off farther than that
+void turn_off(const Place& place, Feature at, Vec3d known, Vec3d& direction) noexcept {
+  const auto turn = [&](Vec3d way) {
+    const double allowed = dot(known, way);
+    const double along = dot(direction, way) - (allowed > 0 ? allowed : 0);
+    if (along > 0) direction -= (along / squared_norm(way)) * way;
+  };
+  const auto turn_off_sector = [&](const Sector& sector) {
+    turn(sector.from);
+    turn(sector.to);
+    if (at.kind == Feature::Kind::edge) {
+      turn(cross(normal_of(place.image.region_triangles[sector.triangle]), sector.from));
+    }
+  };
+  turn_off_sector(sector_at(place.image, place.triangle, at));
+  visit_around(place.image, place.triangle, place.point, turn_off_sector);
+}
+
 }  // namespace
 
-Fall fall_across(const ImageView& image, std::uint32_t triangle, Vec3d point,
-                 Vec3d direction) noexcept {
-  const std::uint32_t own = image.region_triangles[triangle].region;
+Fall fall_across(const Place& place, Vec3d direction) noexcept {
+  const auto triangles = place.image.region_triangles;
+  const std::uint32_t own = triangles[place.triangle].region;
   Fall fall;
-  visit_around(image, triangle, point, [&](const Sector& sector) {
-    const image::RegionTriangle& t = image.region_triangles[sector.triangle];
+  visit_around(place.image, place.triangle, place.point, [&](const Sector& sector) {
+    const image::RegionTriangle& t = triangles[sector.triangle];
     if (t.region == own) return;
     const double rate = along_sector(-direction, sector, normal_of(t));
     if (rate > fall.rate) fall = {rate, t.region};
   });
   return fall;
+}
+
+Vec3d common_normal(const Place& a, const Place& b, const Mat3d& b_in_a, Vec3d normal) noexcept {
+  const Feature at_a = feature_of(a);
+  const Feature at_b = feature_of(b);
+  if (at_a.kind == Feature::Kind::face || at_b.kind == Feature::Kind::face) return normal;
+  const Mat3d to_b = transpose(b_in_a);
+  const Vec3d known = to_b * normal;
+  Vec3d found = known;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    Vec3d of_a = -(b_in_a * found);
+    turn_off(a, at_a, {}, of_a);
+    found = -(to_b * of_a);
+    turn_off(b, at_b, known, found);
+  }
+  const double length = norm(found);
+  return length > 0 ? (1 / length) * (b_in_a * found) : normal;
 }
 
 }  // namespace palpate::regions

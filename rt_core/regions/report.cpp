@@ -102,11 +102,10 @@ class Report {
     const Vec3d normal = distance > kTouching ? (1 / distance) * apart : facing(pair, witness.b);
     const bool flip = distance > kTouching && (memory_.containment[item.pair].inside ||
                                                is_behind(item, on_a - apart, normal));
-    const double side = flip ? -1 : 1;
-    add(item, {on_a, on_a - apart, side * normal, side * distance,
+    const Felt felt = flip ? Felt{-normal, 1} : at_border(item, on_a, on_a - apart, normal);
+    add(item, {on_a, on_a - apart, felt.normal, flip ? -distance : distance,
                pair.image_a->region_triangles[witness.a].piece,
-               pair.image_b->region_triangles[witness.b].piece,
-               flip ? 1 : share_at_border(item, on_a, normal)});
+               pair.image_b->region_triangles[witness.b].piece, felt.share});
   }
 
   /// The region is nearest to the inner side of b's surface: it has passed through, beside others
@@ -125,15 +124,18 @@ class Report {
     double least = dot(normal, facing(pair, face));
     if (least > kSquare) return false;
     double most = least;
-    const Vec3d point =
-        (1 / pair.scale_b) * (transpose(pair.b_in_a.rotation) * (on_b - pair.b_in_a.translation));
-    visit_around(b, face, point, [&](const Sector& sector) {
+    visit_around(b, face, in_image_of_b(pair, on_b), [&](const Sector& sector) {
       const double beside = dot(normal, facing(pair, sector.triangle));
       least = beside < least ? beside : least;
       most = beside > most ? beside : most;
     });
     return least < -kSquare && most + kMoreSquare < -least &&
            is_closed(b, b.region_triangles[face]);
+  }
+
+  static Vec3d in_image_of_b(const PairState& pair, Vec3d point) noexcept {
+    return (1 / pair.scale_b) *
+           (transpose(pair.b_in_a.rotation) * (point - pair.b_in_a.translation));
   }
 
   /// The outward normal of a triangle of b.
@@ -143,19 +145,28 @@ class Report {
     return length > 0 ? (1 / length) * n : Vec3d{1, 0, 0};
   }
 
+  struct Felt {
+    Vec3d normal{};
+    double share = 1;
+  };
+
   /// A region that ends beside a nearer place has its nearest point on its own border, in a
-  /// direction that leans: it would push along an edge that it lies on. Less of it is felt the
-  /// faster the distance falls where the surface goes on, if that is known to be nearer.
-  double share_at_border(const Active& item, Vec3d on_a, Vec3d normal) noexcept {
+  /// direction that leans: it would push along an edge that it lies on. The lean is taken off as
+  /// far as the other surface has such normals, and less of the contact is felt the faster the
+  /// distance falls where the surface goes on: both if what goes on is known to be nearer.
+  Felt at_border(const Active& item, Vec3d on_a, Vec3d on_b, Vec3d normal) noexcept {
     constexpr double kAll = 0.1;  // sines of the lean
     constexpr double kNone = 0.5;
     const PairState& pair = pair_of(item);
     const Witness& witness = state_of(item).witness;
-    const Fall fall = fall_across(*pair.image_a, witness.a, (1 / pair.scale_a) * on_a, normal);
-    if (!(fall.rate > kAll)) return 1;
+    const Place a{*pair.image_a, witness.a, (1 / pair.scale_a) * on_a};
+    const Place b{*pair.image_b, witness.b, in_image_of_b(pair, on_b)};
+    const Fall fall = fall_across(a, normal);
+    if (!(fall.rate > 0)) return {normal};
     const Witness& beside = memory_.states[memory_.first_state[item.pair] + fall.region].witness;
-    if (!beside.known() || !(beside.distance < witness.distance)) return 1;
-    return smooth_step((kNone - fall.rate) / (kNone - kAll));
+    if (!beside.known() || !(beside.distance < witness.distance)) return {normal};
+    return {common_normal(a, b, pair.b_in_a.rotation, normal),
+            smooth_step((kNone - fall.rate) / (kNone - kAll))};
   }
 
   /// @param witness_crosses  found or not, there is a pair that does

@@ -59,15 +59,15 @@ const Case kCases[] = {
     {"regions, exact",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .exact = true},
      kUnlimited,
-     0x69f900900adab639},
+     0x42852ea968082a45},
     {"regions, 100 units",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      100,
-     0x8c5ae29a0699ec00},
+     0x60f26cd6500e80f5},
     {"regions, tolerance",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .force_tolerance_N = 3},
      kUnlimited,
-     0x4d7e44c74d5f8d71},
+     0xe696e21be31f63dd},
 };
 constexpr int kTicks = 200;
 

@@ -345,16 +345,24 @@ TEST_P(AnalyticScene, edges_of_boxes_of_many_triangles_cross_without_pushing_alo
   const Quat back{other.w, -other.x, -other.y, -other.z};
   load({&a, &b});
   const Vec3d up = rotation(back) * Vec3d{0, 0, 1};
-  double sum = 0;
-  for (int i = 0; i < kTicks; ++i) {
-    const Vec3d shift_m = rotation(back) * Vec3d{0.004 * i / kTicks - 0.002, 0.003 * i / kTicks, 0};
-    const double up_m = 2 * std::numbers::sqrt2 * kHalf_m + kGap_m;
-    const TickResult r = at({up_m * up + shift_m, back * turn({kEighth, 0, 0})});
-    const double off = norm(r.wrench.force_N - spring_N(kGap_m) * up) / spring_N(kGap_m);
-    EXPECT_LT(off, 0.15) << i;
-    sum += off;
+  const double force_N = spring_N(kGap_m);
+  for (const double angle : {2 * kEighth, 1.5 * kEighth, kEighth}) {
+    SCOPED_TRACE(angle);
+    const double aside = angle - 2 * kEighth;
+    const Quat across = turn({0, 0, aside});
+    for (int i = 0; i < kTicks; ++i) {
+      // With b's edge upwards, along y.
+      const double up_m = std::numbers::sqrt2 * kHalf_m + kGap_m;
+      const Vec3d middle_m{0.004 * i / kTicks - 0.002, 0.003 * i / kTicks,
+                           std::numbers::sqrt2 * kHalf_m + up_m};
+      const Vec3d place_m{0, middle_m.y - std::tan(aside) * middle_m.x, up_m - kGap_m / 2};
+      const Mat3d turned = rotation(back);
+      const TickResult r = at({turned * middle_m, back * across * turn({kEighth, 0, 0})});
+      EXPECT_LT(norm(r.wrench.force_N - force_N * up), 1e-3 * force_N) << i;
+      const Vec3d torque_Nm = cross(turned * (place_m - middle_m), force_N * up);
+      EXPECT_LT(norm(r.wrench.torque_Nm - torque_Nm), 0.06e-3 * force_N) << i;
+    }
   }
-  EXPECT_LT(sum / kTicks, 0.01);
 }
 
 TEST_P(AnalyticScene, peg_between_opposed_walls) {

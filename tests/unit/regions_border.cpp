@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <vector>
 
@@ -72,6 +73,8 @@ class Cube {
 /// z = -1 is the side of triangles 0 and 1.
 constexpr std::uint32_t kBelow = 0;
 
+Place below(const Cube& cube, Vec3d point) { return {cube.view, kBelow, point}; }
+
 TEST(RegionsBorder, nothing_else_holds_a_point_inside_a_triangle) {
   EXPECT_TRUE(Cube().around(kBelow, {-0.5, 0.5, -1}).empty());
 }
@@ -108,8 +111,7 @@ TEST(RegionsBorder, distance_falls_across_an_edge_by_the_sine_of_the_lean) {
   const Cube cube;
   const double lean = 0.3;
   // From a point beside the cube's lower edge at x = -1, above that edge.
-  const Fall fall =
-      fall_across(cube.view, kBelow, {-1, 0.3, -1}, {std::cos(lean), 0, -std::sin(lean)});
+  const Fall fall = fall_across(below(cube, {-1, 0.3, -1}), {std::cos(lean), 0, -std::sin(lean)});
   EXPECT_NEAR(fall.rate, std::sin(lean), 1e-12);
   EXPECT_EQ(fall.region, cube.view.region_triangles[9].region);
 }
@@ -117,10 +119,10 @@ TEST(RegionsBorder, distance_falls_across_an_edge_by_the_sine_of_the_lean) {
 TEST(RegionsBorder, distance_does_not_fall_where_the_point_is_the_nearest_of_all) {
   const Cube cube;
   const Vec3d beside{std::sqrt(0.5), 0, std::sqrt(0.5)};
-  EXPECT_EQ(fall_across(cube.view, kBelow, {-1, 0.3, -1}, beside).rate, 0);
-  EXPECT_EQ(fall_across(cube.view, kBelow, {-1, 0.3, -1}, {0, 0, 1}).rate, 0);
+  EXPECT_EQ(fall_across(below(cube, {-1, 0.3, -1}), beside).rate, 0);
+  EXPECT_EQ(fall_across(below(cube, {-1, 0.3, -1}), {0, 0, 1}).rate, 0);
   const double third = std::sqrt(1.0 / 3);
-  EXPECT_EQ(fall_across(cube.view, kBelow, {-1, -1, -1}, {third, third, third}).rate, 0);
+  EXPECT_EQ(fall_across(below(cube, {-1, -1, -1}), {third, third, third}).rate, 0);
 }
 
 TEST(RegionsBorder, steepest_way_around_a_corner_tells) {
@@ -128,18 +130,82 @@ TEST(RegionsBorder, steepest_way_around_a_corner_tells) {
   // The nearest of the lower side is its corner; the edge up from there leads nearer, and over the
   // two walls nothing does sooner.
   const Vec3d up{0.48, 0.6, -0.64};
-  const Fall fall = fall_across(cube.view, kBelow, {-1, -1, -1}, up);
+  const Fall fall = fall_across(below(cube, {-1, -1, -1}), up);
   EXPECT_NEAR(fall.rate, 0.64, 1e-12);
   // Over the wall at y = -1 it leads nearer still.
   const Vec3d aside{-0.48, 0.6, -0.64};
-  const Fall on_wall = fall_across(cube.view, kBelow, {-1, -1, -1}, aside);
+  const Fall on_wall = fall_across(below(cube, {-1, -1, -1}), aside);
   EXPECT_NEAR(on_wall.rate, 0.8, 1e-12);
   EXPECT_EQ(on_wall.region, cube.view.region_triangles[4].region);
 }
 
 TEST(RegionsBorder, own_region_is_no_border) {
   // Across the diagonal the same side goes on.
-  EXPECT_EQ(fall_across(Cube().view, kBelow, {0, 0, -1}, {-0.6, 0.8, 0}).rate, 0);
+  EXPECT_EQ(fall_across(below(Cube(), {0, 0, -1}), {-0.6, 0.8, 0}).rate, 0);
+}
+
+// Two such cubes, the edges between their sides x = -1 and z = -1 across each other.
+constexpr Vec3d kOnEdge{-1, 0.3, -1};
+const double kHalf = std::sqrt(0.5);
+/// From b to a: the middle of the normals of a's edge, inwards.
+const Vec3d kUp{kHalf, 0, kHalf};
+
+/// The edge of b, in the coordinates of a, at an angle to that of a.
+Vec3d edge_of_b(double angle) {
+  return {-kHalf * std::sin(angle), std::cos(angle), kHalf * std::sin(angle)};
+}
+
+/// The middle of the normals of b's edge leans from kUp by `lean`.
+Mat3d across_a(double angle, double lean) {
+  const Vec3d edge = edge_of_b(angle);
+  const Vec3d middle = std::cos(lean) * kUp + std::sin(lean) * cross(edge, kUp);
+  const Vec3d along{0, 1, 0};
+  const Vec3d outwards{-kHalf, 0, -kHalf};
+  return transpose(Mat3d{edge, middle, cross(edge, middle)}) *
+         Mat3d{along, outwards, cross(along, outwards)};
+}
+
+TEST(RegionsBorder, normal_where_edges_cross_is_square_to_both) {
+  const Cube cube;
+  constexpr double kLean = 0.3;
+  for (const double angle : {std::numbers::pi / 2, std::numbers::pi / 3, std::numbers::pi / 4}) {
+    SCOPED_TRACE(angle);
+    const Vec3d leaning = std::cos(kLean) * kUp + std::sin(kLean) * cross(edge_of_b(angle), kUp);
+    const Vec3d found =
+        common_normal(below(cube, kOnEdge), below(cube, kOnEdge), across_a(angle, 0), leaning);
+    EXPECT_NEAR(norm(found), 1, 1e-12);
+    EXPECT_NEAR(dot(found, edge_of_b(angle)), 0, 1e-12);
+    EXPECT_LE(norm(found - kUp), std::tan(kLean) * std::pow(std::cos(angle), 16) + 1e-12);
+  }
+}
+
+TEST(RegionsBorder, normal_stays_one_of_the_other_surface) {
+  const Cube cube;
+  const double quarter = std::numbers::pi / 2;
+  // b's edge has no normal nearer to kUp than that of one of its sides.
+  const Mat3d b_in_a = across_a(quarter, 1.0);
+  const Vec3d leaning = b_in_a * Vec3d{-std::sin(0.2), 0, -std::cos(0.2)};
+  const Vec3d on_edge = common_normal(below(cube, kOnEdge), below(cube, kOnEdge), b_in_a, leaning);
+  const Vec3d side = b_in_a * Vec3d{0, 0, -1};
+  const Vec3d wall = b_in_a * Vec3d{-1, 0, 0};
+  const Vec3d nearest = dot(side, kUp) > dot(wall, kUp) ? side : wall;
+  EXPECT_LT(norm(on_edge - nearest), 1e-3);
+  // A corner's are between those of three sides.
+  const Vec3d on_corner =
+      transpose(b_in_a) *
+      common_normal(below(cube, kOnEdge), below(cube, {-1, -1, -1}), b_in_a, leaning);
+  for (const double outwards : {-on_corner.x, -on_corner.y, -on_corner.z}) {
+    EXPECT_GE(outwards, -1e-9);
+  }
+}
+
+TEST(RegionsBorder, normal_on_a_face_is_that_of_the_face) {
+  const Cube cube;
+  const Mat3d b_in_a = across_a(1.0, 0);
+  const Vec3d normal = b_in_a * Vec3d{0, 0, -1};
+  const Place face = below(cube, {-0.5, 0.5, -1});
+  EXPECT_EQ(norm(common_normal(below(cube, kOnEdge), face, b_in_a, normal) - normal), 0);
+  EXPECT_EQ(norm(common_normal(face, below(cube, kOnEdge), b_in_a, kUp) - kUp), 0);
 }
 
 }  // namespace
