@@ -49,17 +49,21 @@ Processor ask() noexcept { return {}; }
 
 }  // namespace
 
-std::uint32_t all_kernels(const Kernels* (&out)[3]) noexcept {
+std::uint32_t all_kernels(const Kernels* (&out)[kMostKernels]) noexcept {
   const Processor processor = ask();
   std::uint32_t count = 0;
-  out[count++] = kernels_base();
-  if (processor.avx2 && kernels_avx2() != nullptr) out[count++] = kernels_avx2();
-  if (processor.avx512 && kernels_avx512() != nullptr) out[count++] = kernels_avx512();
+  const auto add = [&](bool runs, const Kernels* table) {
+    if (runs && table != nullptr) out[count++] = table;
+  };
+  add(true, kernels_scalar());
+  add(true, kernels_base());
+  add(processor.avx2, kernels_avx2());
+  add(processor.avx512, kernels_avx512());
   return count;
 }
 
 const Kernels& best_kernels() noexcept {
-  const Kernels* found[3] = {};
+  const Kernels* found[kMostKernels] = {};
   return *found[all_kernels(found) - 1];
 }
 

@@ -78,11 +78,14 @@ struct Kernels {
 /// for the real-time loop.
 const Kernels& best_kernels() noexcept;
 
-/// All tables that can run here, narrowest first; for tests.
-/// @return how many of out are set
-std::uint32_t all_kernels(const Kernels* (&out)[3]) noexcept;
+inline constexpr std::uint32_t kMostKernels = 4;
+
+/// All tables that can run here, narrowest first; for tests and benchmarks.
+/// @return how many of out are set, at least one
+std::uint32_t all_kernels(const Kernels* (&out)[kMostKernels]) noexcept;
 
 // What each translation unit provides; null where the build or the target has no such instructions.
+const Kernels* kernels_scalar() noexcept;
 const Kernels* kernels_base() noexcept;
 const Kernels* kernels_avx2() noexcept;
 const Kernels* kernels_avx512() noexcept;

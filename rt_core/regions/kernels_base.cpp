@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels for every target; the build sets the flags of this file.
+// The kernels for what every processor of a target with vectors has.
+#include "rt_core/regions/simd.hpp"
+
+#if PALPATE_VECTORS
+
 #include "rt_core/regions/box_kernel.hpp"
 #include "rt_core/regions/triangle_kernel.hpp"
 
@@ -11,3 +15,15 @@ const Kernels* kernels_base() noexcept {
 }
 
 }  // namespace palpate::regions
+
+#else
+
+#include "rt_core/regions/kernels.hpp"
+
+namespace palpate::regions {
+
+const Kernels* kernels_base() noexcept { return nullptr; }
+
+}  // namespace palpate::regions
+
+#endif

@@ -2,8 +2,9 @@
 // Lanes of floats, as wide as the translation unit's target allows. Private to the kernels.
 //
 // GCC's and Clang's vector types instead of a library: every operation is IEEE, lane by lane, in
-// the order in which it is written, so that 4, 8 and 16 lanes give the same bits, and a target
-// without vectors gets plain floats from the same source. All of it is in an unnamed namespace:
+// the order in which it is written, so that 4, 8 and 16 lanes give the same bits, and one lane of
+// plain floats does, for targets without vectors: a quarter of the code that compilers make of four
+// lanes there. All of it is in an unnamed namespace:
 // the kernels are compiled several times with different instruction sets, and no function of one
 // may be linked into another.
 #pragma once
@@ -14,8 +15,19 @@
 #include <immintrin.h>
 #endif
 
+/// Whether this translation unit has lanes: the target has, and the one without did not ask.
+#if !defined(PALPATE_SCALAR) && (defined(__SSE2__) || defined(__ARM_NEON))
+#define PALPATE_VECTORS 1
+#else
+#define PALPATE_VECTORS 0
+#endif
+
 namespace palpate::regions {
 namespace {
+
+#define PALPATE_LANES [[gnu::always_inline]] inline
+
+#if PALPATE_VECTORS
 
 #if defined(__AVX512F__)
 inline constexpr int kLanes = 16;
@@ -28,8 +40,6 @@ inline constexpr int kLanes = 4;
 using Floats = float __attribute__((vector_size(sizeof(float) * kLanes)));
 using Ints = std::int32_t __attribute__((vector_size(sizeof(std::int32_t) * kLanes)));
 
-#define PALPATE_LANES [[gnu::always_inline]] inline
-
 PALPATE_LANES Floats load(const float* from) noexcept {
   Floats v;
   __builtin_memcpy(&v, from, sizeof v);
@@ -38,13 +48,9 @@ PALPATE_LANES Floats load(const float* from) noexcept {
 PALPATE_LANES void store(Floats v, float* to) noexcept { __builtin_memcpy(to, &v, sizeof v); }
 PALPATE_LANES Floats all(float v) noexcept { return v - Floats{}; }
 
-/// Second operand where the comparison is false, NaN included.
-PALPATE_LANES Floats least(Floats a, Floats b) noexcept { return a < b ? a : b; }
-PALPATE_LANES Floats most(Floats a, Floats b) noexcept { return a > b ? a : b; }
 PALPATE_LANES Floats magnitude(Floats v) noexcept {
   return reinterpret_cast<Floats>(reinterpret_cast<Ints>(v) & 0x7fffffff);
 }
-PALPATE_LANES Floats clamp01(Floats v) noexcept { return least(most(v, Floats{}), all(1.0f)); }
 
 /// Bit i set where lane i of the mask is.
 PALPATE_LANES std::uint32_t bits(Ints mask) noexcept {
@@ -58,6 +64,26 @@ PALPATE_LANES std::uint32_t bits(Ints mask) noexcept {
   return out;
 #endif
 }
+
+#else
+
+inline constexpr int kLanes = 1;
+
+using Floats = float;
+using Ints = bool;
+
+PALPATE_LANES Floats load(const float* from) noexcept { return *from; }
+PALPATE_LANES void store(Floats v, float* to) noexcept { *to = v; }
+PALPATE_LANES Floats all(float v) noexcept { return v; }
+PALPATE_LANES Floats magnitude(Floats v) noexcept { return __builtin_fabsf(v); }
+PALPATE_LANES std::uint32_t bits(Ints mask) noexcept { return mask ? 1 : 0; }
+
+#endif
+
+/// Second operand where the comparison is false, NaN included.
+PALPATE_LANES Floats least(Floats a, Floats b) noexcept { return a < b ? a : b; }
+PALPATE_LANES Floats most(Floats a, Floats b) noexcept { return a > b ? a : b; }
+PALPATE_LANES Floats clamp01(Floats v) noexcept { return least(most(v, Floats{}), all(1.0f)); }
 
 /// Three-vectors, lane by lane.
 struct Vectors {

@@ -127,7 +127,7 @@ test::TriangleDistance truth(const Pairs& pairs, std::uint32_t i) {
 }
 
 std::span<const Kernels* const> tables() {
-  static const Kernels* found[3];
+  static const Kernels* found[kMostKernels];
   static const std::uint32_t count = all_kernels(found);
   return {found, count};
 }

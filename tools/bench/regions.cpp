@@ -5,8 +5,9 @@
 //                                                scenes: jaws, tips, golf, socket, screw, joint;
 //                                                default: all, with 0.01, 0.02 and 0.05; detail
 //                                                left out before baking, against all of it
-//   bench_regions TICKS growth                   jaws with more and more triangles at one motion
-//   bench_regions TICKS detail                   the same with detail left out before baking
+//   bench_regions TICKS growth [KERNELS]         jaws with more and more triangles at one motion
+//   bench_regions TICKS detail [KERNELS]         the same with detail left out before baking;
+//                                                KERNELS: scalar, base, avx2, avx512; default: best
 //   bench_regions TICKS instructions             jaws by each instruction set of this processor
 //
 // A row (CSV) for each scene, contact tolerance (relative to the radius) and mode: exact with all
@@ -201,7 +202,8 @@ void measure(const SceneName& scene, const Asked& asked, int ticks) {
 /// Interlocking jaws at the poses of the default ones, the same contact however fine they are, with
 /// detail left out of both before baking; against those that have all of it.
 /// @param deviations  the first is 0
-void measure_finer(int ticks, std::initializer_list<double> deviations) {
+void measure_finer(int ticks, const regions::Kernels& kernels,
+                   std::initializer_list<double> deviations) {
   constexpr double kDeltaRel = 0.02;
   constexpr double kTolerance_N = 3;
   const SceneName& jaws = kScenes[0];
@@ -220,6 +222,8 @@ void measure_finer(int ticks, std::initializer_list<double> deviations) {
       const Settings loose{
           .engine = EngineKind::regions, .delta_m = delta, .force_tolerance_N = kTolerance_N};
       Bench loose_bench(a, b, loose);
+      exact_bench.use(kernels);
+      loose_bench.use(kernels);
       char name[64];
       std::snprintf(name, sizeof name, "jaws_%zu_%zu_%g", 2 * triangles,
                     a.view.region_triangles.size() + b.view.region_triangles.size(), deviation);
@@ -236,11 +240,25 @@ void measure_finer(int ticks, std::initializer_list<double> deviations) {
   }
 }
 
-void measure_growth(int ticks) { measure_finer(ticks, {0}); }
-void measure_detail(int ticks) { measure_finer(ticks, {0, 5e-4, 1e-3, 2e-3}); }
+void measure_growth(int ticks, const regions::Kernels& kernels) {
+  measure_finer(ticks, kernels, {0});
+}
+void measure_detail(int ticks, const regions::Kernels& kernels) {
+  measure_finer(ticks, kernels, {0, 5e-4, 1e-3, 2e-3});
+}
+
+/// Those named, or none that run here.
+const regions::Kernels* kernels_named(const char* name) {
+  const regions::Kernels* tables[regions::kMostKernels] = {};
+  const std::uint32_t count = regions::all_kernels(tables);
+  const auto found = std::find_if(tables, tables + count, [&](const regions::Kernels* table) {
+    return std::strcmp(table->name, name) == 0;
+  });
+  return found != tables + count ? *found : nullptr;
+}
 
 /// By each table of kernels that runs here, narrowest first, turn by turn.
-void measure_instructions(int ticks) {
+void measure_instructions(int ticks, const regions::Kernels&) {
   constexpr double kDeltaRel = 0.02;
   constexpr int kTurns = 5;
   const SceneName& jaws = kScenes[0];
@@ -248,7 +266,7 @@ void measure_instructions(int ticks) {
   const Body b(jaws.b, kDeltaRel, bake::ForEngine::regions);
   const double delta = kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
   const std::vector<Pose> poses = motion(jaws, a, b, delta, ticks);
-  const regions::Kernels* tables[3] = {};
+  const regions::Kernels* tables[regions::kMostKernels] = {};
   const std::uint32_t count = regions::all_kernels(tables);
   Bench bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
   std::optional<Run> exact;
@@ -297,15 +315,20 @@ int main(int argc, char** argv) {
       "of_fcl\n");
   constexpr struct {
     const char* name;
-    void (*measure)(int ticks);
+    void (*measure)(int ticks, const palpate::regions::Kernels& kernels);
   } kOthers[] = {{"growth", measure_growth},
                  {"detail", measure_detail},
                  {"instructions", measure_instructions}};
   for (const auto& other : kOthers) {
-    if (argc == 3 && std::strcmp(argv[2], other.name) == 0) {
-      other.measure(ticks);
-      return 0;
+    if (argc < 3 || std::strcmp(argv[2], other.name) != 0) continue;
+    const palpate::regions::Kernels* kernels =
+        argc > 3 ? kernels_named(argv[3]) : &palpate::regions::best_kernels();
+    if (kernels == nullptr) {
+      std::fprintf(stderr, "bench_regions: no kernels here are called %s\n", argv[3]);
+      return 2;
     }
+    other.measure(ticks, *kernels);
+    return 0;
   }
   for (const SceneName& scene : kScenes) {
     if (argc <= 2) measure_asked(scene, {}, ticks);
