@@ -132,8 +132,10 @@ struct Contact {
   /// Where its force acts: midway between the two points or, where wide pieces meet at their faces
   /// (levels engine), beside that, at the centre of pressure (convex/pressure.hpp).
   Vec3d centre_m{};
-  Vec3d normal{};         ///< unit, from b to a; of an overlap the way that parts the surfaces
-  double distance_m = 0;  ///< signed: negative where the pieces overlap
+  /// Unit, from b to a; of an overlap the way that parts the surfaces; on the border of a region
+  /// (regions engine) turned toward a normal that both surfaces have (regions/border.hpp).
+  Vec3d normal{};
+  double distance_m = 0;  ///< of the points; signed: negative where the pieces overlap
   /// 0 to 1: so much of its depth below delta is felt. Less than all in the regions engine only: on
   /// the border of a region beside which the surface goes on nearer, and of an overlap that others
   /// of the same pieces lead out of sooner.

@@ -70,13 +70,13 @@ PALPATE_LANES std::uint32_t bits(Ints mask) noexcept {
 inline constexpr int kLanes = 1;
 
 using Floats = float;
-using Ints = bool;
+using Ints = int;  ///< 0 or not
 
 PALPATE_LANES Floats load(const float* from) noexcept { return *from; }
 PALPATE_LANES void store(Floats v, float* to) noexcept { *to = v; }
 PALPATE_LANES Floats all(float v) noexcept { return v; }
 PALPATE_LANES Floats magnitude(Floats v) noexcept { return __builtin_fabsf(v); }
-PALPATE_LANES std::uint32_t bits(Ints mask) noexcept { return mask ? 1 : 0; }
+PALPATE_LANES std::uint32_t bits(Ints mask) noexcept { return mask != 0 ? 1 : 0; }
 
 #endif
 
