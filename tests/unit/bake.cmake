@@ -10,7 +10,6 @@ if(PALPATE_HOST)
   palpate_test(bake_awkward_long SOURCES property/bake_awkward.cpp LIBS bodies_support LABEL long)
   target_compile_definitions(bake_awkward_long PRIVATE PALPATE_LONG)
 
-  find_package(nlohmann_json REQUIRED)
   palpate_test(bake_command_test SOURCES unit/bake_command.cpp
     LIBS palpate_rt nlohmann_json::nlohmann_json)
   add_dependencies(bake_command_test palpate)

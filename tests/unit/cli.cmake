@@ -3,7 +3,6 @@ palpate_test(cli_test SOURCES unit/cli_poses.cpp unit/cli_output_file.cpp unit/c
   unit/cli_surface_points.cpp LIBS palpate_cli)
 
 # These run the executable.
-find_package(nlohmann_json REQUIRED)
 palpate_test(cli_process_test SOURCES unit/cli_frame.cpp unit/cli_replay.cpp
   LIBS palpate_rt nlohmann_json::nlohmann_json)
 add_dependencies(cli_process_test palpate)

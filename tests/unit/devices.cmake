@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # These run the executable.
-find_package(nlohmann_json REQUIRED)
 palpate_test(device_command_test SOURCES unit/device_commands.cpp
   LIBS palpate_rt nlohmann_json::nlohmann_json)
 add_dependencies(device_command_test palpate)

@@ -8,7 +8,6 @@ if(PALPATE_HOST)
   target_compile_definitions(image_host_test PRIVATE PALPATE_DOCS="${PROJECT_SOURCE_DIR}/docs"
     PALPATE_CC="${CMAKE_C_COMPILER}" PALPATE_CXX="${CMAKE_CXX_COMPILER}")
 
-  find_package(nlohmann_json REQUIRED)
   palpate_test(image_cli_test SOURCES unit/image_cli.cpp LIBS palpate_rt nlohmann_json::nlohmann_json)
   add_dependencies(image_cli_test palpate)
   target_compile_definitions(image_cli_test PRIVATE PALPATE_EXECUTABLE="$<TARGET_FILE:palpate>")

@@ -11,7 +11,6 @@ target_compile_definitions(realtime_test PRIVATE
   PALPATE_DOCS="${PROJECT_SOURCE_DIR}/docs" PALPATE_TESTS="${PROJECT_SOURCE_DIR}/tests")
 
 # These run the executable.
-find_package(nlohmann_json REQUIRED)
 palpate_test(realtime_process_test SOURCES unit/realtime_process.cpp
   LIBS palpate_rt nlohmann_json::nlohmann_json)
 add_dependencies(realtime_process_test palpate)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 if(PALPATE_HOST)
-  find_package(nlohmann_json REQUIRED)
   palpate_test(report_test
     SOURCES unit/report_frames.cpp unit/report_sweep.cpp unit/report_input.cpp unit/report_contacts.cpp unit/report_shapes.cpp
       unit/report_json.cpp unit/report_words.cpp
-    LIBS palpate_cli)
+    LIBS palpate_cli nlohmann_json::nlohmann_json)
 
   palpate_test(report_command_test SOURCES unit/report_command.cpp
     LIBS palpate_tools palpate_bake nlohmann_json::nlohmann_json)

@@ -4,7 +4,6 @@ palpate_test(sweep_test
   LIBS palpate_cli)
 
 # These run the executable.
-find_package(nlohmann_json REQUIRED)
 palpate_test(sweep_process_test SOURCES unit/sweep_command.cpp LIBS palpate_rt nlohmann_json::nlohmann_json)
 add_dependencies(sweep_process_test palpate)
 target_compile_definitions(sweep_process_test PRIVATE PALPATE_EXECUTABLE="$<TARGET_FILE:palpate>")

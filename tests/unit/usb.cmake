@@ -18,7 +18,6 @@ if(PALPATE_HOST)
   if(UMOCKDEV_RUN AND DFU_UTIL AND NOT PALPATE_SANITIZE)
     add_library(usbfs_shim MODULE support/usbfs_shim.cpp support/emulated_usbfs.cpp)
     target_link_libraries(usbfs_shim PRIVATE palpate_flags palpate_hal ${CMAKE_DL_LIBS})
-    find_package(nlohmann_json REQUIRED)
     palpate_test(usb_process_test SOURCES unit/usb_process.cpp
       LIBS palpate_rt nlohmann_json::nlohmann_json LABEL usb)
     add_dependencies(usb_process_test palpate usbfs_shim)
