@@ -116,6 +116,7 @@ typedef struct palpate_budget {
 } palpate_budget;
 
 typedef struct palpate_contact {
+  /* World axes. normal: unit, from b to a, not always along the points (palpate_rt.hpp). */
   double point_a_m[3], point_b_m[3], normal[3];
   double distance_m, weight;
   uint32_t pair, piece_a, level_a, piece_b, level_b, reserved;

@@ -75,15 +75,13 @@ struct Across {
   return {triangle, from, corner(t, (at.index + 2) % 3, 1) - start};
 }
 
-/// Calls visit(Sector) for every other triangle that holds a point of `triangle`: the one across
+/// Calls visit(Sector) for every other triangle that holds a feature of `triangle`: the one across
 /// its edge, or those around its corner, each way up to a border of the surface and kMostAround in
 /// all.
-/// @param point  image coordinates, on the triangle
 /// O(kMostAround)
 template <typename Visit>
-void visit_around(const ImageView& image, std::uint32_t triangle, Vec3d point,
+void visit_around(const ImageView& image, std::uint32_t triangle, Feature at,
                   Visit visit) noexcept {
-  const Feature at = feature_at(image.region_triangles[triangle], point);
   if (at.kind == Feature::Kind::face) return;
   if (at.kind == Feature::Kind::edge) {
     const Across next = across(image, triangle, at.index);
@@ -104,6 +102,14 @@ void visit_around(const ImageView& image, std::uint32_t triangle, Vec3d point,
       visit(sector_at(image, here, {Feature::Kind::corner, apex}));
     }
   }
+}
+
+/// The same for a point.
+/// @param point  image coordinates, on the triangle
+template <typename Visit>
+void visit_around(const ImageView& image, std::uint32_t triangle, Vec3d point,
+                  Visit visit) noexcept {
+  visit_around(image, triangle, feature_at(image.region_triangles[triangle], point), visit);
 }
 
 }  // namespace palpate::regions

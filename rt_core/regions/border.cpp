@@ -47,7 +47,7 @@ void turn_off(const Place& place, Feature at, Vec3d known, Vec3d& direction) noe
     }
   };
   turn_off_sector(sector_at(place.image, place.triangle, at));
-  visit_around(place.image, place.triangle, place.point, turn_off_sector);
+  visit_around(place.image, place.triangle, at, turn_off_sector);
 }
 
 }  // namespace

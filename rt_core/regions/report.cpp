@@ -160,11 +160,11 @@ class Report {
     const PairState& pair = pair_of(item);
     const Witness& witness = state_of(item).witness;
     const Place a{*pair.image_a, witness.a, (1 / pair.scale_a) * on_a};
-    const Place b{*pair.image_b, witness.b, in_image_of_b(pair, on_b)};
     const Fall fall = fall_across(a, normal);
     if (!(fall.rate > 0)) return {normal};
     const Witness& beside = memory_.states[memory_.first_state[item.pair] + fall.region].witness;
     if (!beside.known() || !(beside.distance < witness.distance)) return {normal};
+    const Place b{*pair.image_b, witness.b, in_image_of_b(pair, on_b)};
     return {common_normal(a, b, pair.b_in_a.rotation, normal),
             smooth_step((kNone - fall.rate) / (kNone - kAll))};
   }
