@@ -25,6 +25,14 @@ double along_sector(Vec3d direction, const Sector& sector, Vec3d normal) noexcep
 /// Each leaves the square of the cosine between two edges of what is wrong: at 45 degrees 1/256.
 constexpr int kTurns = 8;
 
+/// Squared sine; a direction that turns by less stays. Most do within three turns.
+constexpr double kTurnedLittle2 = 1e-12;
+
+bool turned(Vec3d before, Vec3d after) noexcept {
+  return squared_norm(cross(before, after)) >
+         kTurnedLittle2 * squared_norm(before) * squared_norm(after);
+}
+
 Feature feature_of(const Place& place) noexcept {
   return feature_at(place.image.region_triangles[place.triangle], place.point);
 }
@@ -73,10 +81,12 @@ Vec3d common_normal(const Place& a, const Place& b, const Mat3d& b_in_a, Vec3d n
   const Vec3d known = to_b * normal;
   Vec3d found = known;
   for (int turn = 0; turn < kTurns; ++turn) {
+    const Vec3d before = found;
     Vec3d of_a = -(b_in_a * found);
     turn_off(a, at_a, {}, of_a);
     found = -(to_b * of_a);
     turn_off(b, at_b, known, found);
+    if (!turned(before, found)) break;
   }
   const double length = norm(found);
   return length > 0 ? (1 / length) * (b_in_a * found) : normal;

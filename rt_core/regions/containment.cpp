@@ -36,15 +36,14 @@ class Ray {
   Side run() noexcept {
     const Box box = ray_box();
     const Transform stay = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}, 1};
+    BoxTest test{};
     std::uint32_t size = 0;
     scratch_.stack[size++].a = 0;
     while (size > 0 && !met_edge_) {
       if (!pace_.go_on()) return Side::unknown;
       pace_.charge(1);
       const RegionNode& node = body_.region_nodes[scratch_.stack[--size].a];
-      float squared[kBatch];
-      std::uint32_t met =
-          children_of(node) & kernels_.test_boxes(box, stay, node, kRoom * kRoom, squared);
+      std::uint32_t met = kernels_.test_boxes(box, stay, node, 1, kRoom * kRoom, test);
       for (; met != 0; met &= met - 1) {
         const auto child = node.first + static_cast<std::uint32_t>(__builtin_ctz(met));
         if (node.leaf != 0) {

@@ -48,18 +48,29 @@ struct KernelScratch {
   alignas(64) float rows[112][kBatch];
 };
 
+/// What test_boxes() says of the boxes of a node.
+struct BoxTest {
+  alignas(64) float squared[kBatch];       ///< bounds
+  alignas(64) std::int32_t place[kBatch];  ///< of those near: how many others near are farther
+  alignas(64) float passed[kBatch];  ///< least bounds of those not near, kept from call to call
+};
+
 struct Kernels {
   const char* name;
 
-  /// Bounds from below, squared, of the distances of a box from the boxes of a node, in the unit of
-  /// the node's image: both boxes are projected on the axes of both; gaps along three orthogonal
-  /// axes add by squares (separating axes, Gottschalk, Lin and Manocha 1996, without the crossed
-  /// ones). Rounding: the root is too large by at most 1e-6 of the farther box's distance from the
-  /// origin. Fills all lanes; those beyond the last child repeat the first.
-  /// @return bit i set where out[i] < below
+  /// Bounds from below, squared, of the distances of a box from the boxes of a node: both boxes are
+  /// projected on the axes of both; gaps along three orthogonal axes add by squares (separating
+  /// axes, Gottschalk, Lin and Manocha 1996, without the crossed ones). Rounding: the root is too
+  /// large by at most 1e-6 of the farther box's distance from the origin. Fills all lanes; those
+  /// beyond the last child repeat the first. Of boxes that overlap the nearer is the one whose
+  /// centre is; of two as near to some 2e-6 the later.
+  /// @param unit2  squared unit of the bounds, in that of the node's image
+  /// @param below  squared; nearer boxes are near
+  /// @param out    passed holds what earlier calls left, or the largest of floats
+  /// @return bit i set where child i is near
   std::uint32_t (*test_boxes)(const Box& box, const Transform& to_node,
-                              const image::RegionNode& node, float below,
-                              float (&out_squared)[kBatch]) noexcept;
+                              const image::RegionNode& node, float unit2, float below,
+                              BoxTest& out) noexcept;
 
   /// Squared distances of kBatch pairs of triangles, in the unit of b's image; crossing pairs have
   /// 0 and their bit in the result. All features: 9 pairs of edges, 6 corners and faces, 6

@@ -35,9 +35,4 @@ inline float volume_of(const image::RegionNode& node, std::uint32_t slot) noexce
   return node.half[0][slot] * node.half[1][slot] * node.half[2][slot];
 }
 
-/// Bits of the children of a node.
-inline std::uint32_t children_of(const image::RegionNode& node) noexcept {
-  return (1u << node.children) - 1u;
-}
-
 }  // namespace palpate::regions

@@ -164,9 +164,10 @@ class Report {
     if (!(fall.rate > 0)) return {normal};
     const Witness& beside = memory_.states[memory_.first_state[item.pair] + fall.region].witness;
     if (!beside.known() || !(beside.distance < witness.distance)) return {normal};
+    const double share = smooth_step((kNone - fall.rate) / (kNone - kAll));
+    if (!(share > 0)) return {normal, 0};
     const Place b{*pair.image_b, witness.b, in_image_of_b(pair, on_b)};
-    return {common_normal(a, b, pair.b_in_a.rotation, normal),
-            smooth_step((kNone - fall.rate) / (kNone - kAll))};
+    return {common_normal(a, b, pair.b_in_a.rotation, normal), share};
   }
 
   /// @param witness_crosses  found or not, there is a pair that does

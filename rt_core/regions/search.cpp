@@ -30,48 +30,23 @@ std::uint32_t evaluate(const Kernels& kernels, const PairFrame& frame, SearchScr
   return crossing;
 }
 
-/// Of a box.
-struct Centre {
-  float x, y, z;
-};
-
-Centre centre_in(const Box& box, const Transform& map) noexcept {
-  const float* r = map.rotation;
-  const float* t = map.translation;
-  const float x = box.x[3];
-  const float y = box.y[3];
-  const float z = box.z[3];
-  return {map.scale * (r[0] * x + r[1] * y + r[2] * z) + t[0],
-          map.scale * (r[3] * x + r[4] * y + r[5] * z) + t[1],
-          map.scale * (r[6] * x + r[7] * y + r[8] * z) + t[2]};
-}
-
-/// Of a centre and that of a child.
-float apart_squared(const Centre& centre, const RegionNode& node, std::uint32_t slot) noexcept {
-  const float x = node.centre[0][slot] - centre.x;
-  const float y = node.centre[1][slot] - centre.y;
-  const float z = node.centre[2][slot] - centre.z;
-  return x * x + y * y + z * z;
-}
-
-/// Trees of a scene are larger than the near caches.
-void fetch(const RegionNode& node) noexcept {
-  constexpr std::size_t kLine = 64;
-  const auto* bytes = reinterpret_cast<const std::byte*>(&node);
-  for (std::size_t i = 0; i < sizeof(RegionNode); i += kLine) __builtin_prefetch(bytes + i);
-}
-
 class Search {
  public:
   Search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
          const Witness& witness, const Reach& reach) noexcept
-      : kernels_(kernels), frame_(frame), scratch_(scratch), pace_(pace), reach_(reach) {
+      : kernels_(kernels),
+        frame_(frame),
+        trees_{{*frame.a, frame.b_to_a, frame.scale2_a}, {*frame.b, frame.a_to_b, frame.scale2_b}},
+        scratch_(scratch),
+        pace_(pace),
+        reach_(reach) {
     const float scale = frame.a_to_b.scale;
     volume_a_ = scale * scale * scale;
     out_.best = given_ = witness;
     best_squared_ = witness.known() ? witness.distance * witness.distance : kFar;
     scratch_.near.count = 0;
     if (witness.known()) scratch_.near.add(witness, 0);
+    for (float& least : test_.passed) least = kFar;
     lower_threshold();
   }
 
@@ -91,6 +66,13 @@ class Search {
   }
 
  private:
+  /// One of the two, and how boxes of the other get into its coordinates.
+  struct Tree {
+    const ImageView& image;
+    const Transform& to_here;
+    float scale2;
+  };
+
   Bounds finish() noexcept {
     while (size_ > 0 || pending_ > 0) {
       if (!pace_.go_on() || has_first()) return interrupted();
@@ -115,9 +97,7 @@ class Search {
 
   /// The root of b against a region: the one pair whose second box is not stored.
   void visit_root(std::uint32_t a) noexcept {
-    const Box box = box_of(frame_.a->region_nodes[node_of(a)], slot_of(a));
-    keep_children_of_b(a, 0, false,
-                       expand(box, frame_.a_to_b, frame_.b->region_nodes[0], frame_.scale2_b));
+    open(false, 0, a, frame_.a->region_nodes[node_of(a)]);
   }
 
   /// Into the box with the larger volume: of two as long, the thinner one bounds what it holds
@@ -131,107 +111,46 @@ class Search {
         over_a.leaf == 0 &&
         (over_b.leaf != 0 || volume_a_ * volume_of(over_a, slot_a) > volume_of(over_b, slot_b));
     if (split_a) {
-      const std::uint32_t node = over_a.first + slot_a;
-      fetch(frame_.a->region_nodes[node]);
-      const std::uint32_t near = expand(box_of(over_b, slot_b), frame_.b_to_a,
-                                        frame_.a->region_nodes[node], frame_.scale2_a);
-      keep_children_of_a(node, pair.b, over_b.leaf != 0, near);
+      open(true, over_a.first + slot_a, pair.b, over_b);
     } else {
-      const std::uint32_t node = over_b.first + slot_b;
-      fetch(frame_.b->region_nodes[node]);
-      const std::uint32_t near = expand(box_of(over_a, slot_a), frame_.a_to_b,
-                                        frame_.b->region_nodes[node], frame_.scale2_b);
-      keep_children_of_b(pair.a, node, over_a.leaf != 0, near);
+      open(false, over_b.first + slot_b, pair.a, over_a);
     }
   }
 
-  /// One box against the children of a node; leaves their bounds in squared_.
-  /// @return the children that may hold something nearer
-  std::uint32_t expand(const Box& box, const Transform& to_node, const RegionNode& node,
-                       float scale2) noexcept {
+  /// A node's children against one box of the other tree: those that may hold something nearer are
+  /// kept, the nearest on top. Whole sorted is half the work until the nearest pair is met, against
+  /// the nearest on top and the others in any order.
+  /// @param other  the box, of node `over_other`
+  void open(bool of_a, std::uint32_t node, std::uint32_t other,
+            const RegionNode& over_other) noexcept {
+    const Tree& tree = trees_[of_a ? 0 : 1];
+    const RegionNode& parent = tree.image.region_nodes[node];
     pace_.charge(1);
-    centre_ = centre_in(box, to_node);
-    const std::uint32_t children = children_of(node);
-    const std::uint32_t near =
-        children & kernels_.test_boxes(box, to_node, node, threshold_squared_ / scale2, squared_);
-    if (best_squared_ >= threshold_squared_) {
-      for (std::uint32_t far = children & ~near; far != 0; far &= far - 1) {
-        note_passed_over(squared_[__builtin_ctz(far)] * scale2);
+    std::uint32_t near = kernels_.test_boxes(box_of(over_other, slot_of(other)), tree.to_here,
+                                             parent, tree.scale2, threshold_squared_, test_);
+    if (parent.leaf != 0 && over_other.leaf != 0) {
+      const std::uint32_t single = over_other.first + slot_of(other);
+      for (; near != 0; near &= near - 1) {
+        const auto slot = static_cast<std::uint32_t>(__builtin_ctz(near));
+        const std::uint32_t child = parent.first + slot;
+        add_pair(of_a ? child : single, of_a ? single : child, test_.squared[slot]);
       }
+      return;
     }
-    return near;
+    Candidate* const kept = scratch_.stack + size_;
+    for (; near != 0; near &= near - 1) {
+      PALPATE_ASSERT(size_ < kMaxCandidates);
+      const auto slot = static_cast<std::uint32_t>(__builtin_ctz(near));
+      const std::uint32_t child = child_name(node, slot);
+      kept[test_.place[slot]] = {of_a ? child : other, of_a ? other : child, test_.squared[slot]};
+      ++size_;
+    }
   }
 
   /// Only while nothing within the limit is known does it matter how far what is passed over is:
   /// a region that is far rests for as long.
   void note_passed_over(float squared) noexcept {
     passed_squared_ = squared < passed_squared_ ? squared : passed_squared_;
-  }
-
-  void keep_children_of_a(std::uint32_t node, std::uint32_t b, bool b_is_triangle,
-                          std::uint32_t near) noexcept {
-    const RegionNode& parent = frame_.a->region_nodes[node];
-    const bool pairs = parent.leaf != 0 && b_is_triangle;
-    const std::uint32_t bottom = size_;
-    for (; near != 0; near &= near - 1) {
-      const auto slot = static_cast<std::uint32_t>(__builtin_ctz(near));
-      const float squared = squared_[slot] * frame_.scale2_a;
-      if (pairs) {
-        add_pair(parent.first + slot, triangle_of(*frame_.b, b), squared);
-      } else {
-        push({child_name(node, slot), b, squared, centres(parent, slot, squared)});
-      }
-    }
-    nearest_to_top(bottom);
-  }
-
-  void keep_children_of_b(std::uint32_t a, std::uint32_t node, bool a_is_triangle,
-                          std::uint32_t near) noexcept {
-    const RegionNode& parent = frame_.b->region_nodes[node];
-    const bool pairs = parent.leaf != 0 && a_is_triangle;
-    const std::uint32_t bottom = size_;
-    for (; near != 0; near &= near - 1) {
-      const auto slot = static_cast<std::uint32_t>(__builtin_ctz(near));
-      const float squared = squared_[slot] * frame_.scale2_b;
-      if (pairs) {
-        add_pair(triangle_of(*frame_.a, a), parent.first + slot, squared);
-      } else {
-        push({a, child_name(node, slot), squared, centres(parent, slot, squared)});
-      }
-    }
-    nearest_to_top(bottom);
-  }
-
-  /// Of the box looked at last and a child; asked for where the boxes overlap only.
-  float centres(const RegionNode& node, std::uint32_t slot, float squared) const noexcept {
-    if (squared > 0) return 0;
-    return apart_squared(centre_, node, slot);
-  }
-
-  static bool goes_first(const Candidate& p, const Candidate& q) noexcept {
-    return p.squared < q.squared || (p.squared == q.squared && p.centres < q.centres);
-  }
-
-  /// Sorts the candidates from `bottom` on, at most a node's children. Half the work until the
-  /// nearest pair is met, against the nearest child on top and the others in any order.
-  void nearest_to_top(std::uint32_t bottom) noexcept {
-    for (std::uint32_t i = bottom + 1; i < size_; ++i) {
-      const Candidate next = scratch_.stack[i];
-      std::uint32_t hole = i;
-      for (; hole > bottom && goes_first(scratch_.stack[hole - 1], next); --hole) {
-        scratch_.stack[hole] = scratch_.stack[hole - 1];
-      }
-      scratch_.stack[hole] = next;
-    }
-  }
-
-  static std::uint32_t triangle_of(const ImageView& image, std::uint32_t name) noexcept {
-    return image.region_nodes[node_of(name)].first + slot_of(name);
-  }
-
-  void push(const Candidate& c) noexcept {
-    PALPATE_ASSERT(size_ < kMaxCandidates);
-    scratch_.stack[size_++] = c;
   }
 
   void add_pair(std::uint32_t a, std::uint32_t b, float squared) noexcept {
@@ -300,7 +219,9 @@ class Search {
   /// Everything that was passed over is at least this far.
   float passed_over() const noexcept {
     if (best_squared_ < threshold_squared_) return threshold_;
-    const float passed = sqrt_of(passed_squared_);
+    float passed2 = passed_squared_;
+    for (const float least : test_.passed) passed2 = least < passed2 ? least : passed2;
+    const float passed = sqrt_of(passed2);
     return passed < out_.best.distance || !out_.best.known() ? passed : out_.best.distance;
   }
 
@@ -321,6 +242,7 @@ class Search {
 
   const Kernels& kernels_;
   const PairFrame& frame_;
+  Tree trees_[2];
   SearchScratch& scratch_;
   Pace& pace_;
   Reach reach_;
@@ -332,8 +254,7 @@ class Search {
   float threshold_ = 0;
   float threshold_squared_ = 0;
   float passed_squared_ = kFar;
-  float squared_[kBatch];  // of the children looked at last, in their image's unit
-  Centre centre_{};        // of the single box, beside them
+  BoxTest test_;  // of the children looked at last
   std::uint32_t size_ = 0;
   std::uint32_t pending_ = 0;
   const levels::PairState* pair_ = nullptr;
@@ -364,20 +285,13 @@ void around_b(const ImageView& image, std::uint32_t t, std::uint32_t (&out)[4]) 
 std::uint32_t nearest_child(const Kernels& kernels, const Box& box, const Transform& to_node,
                             const RegionNode& node, Pace& pace) noexcept {
   pace.charge(1);
-  float squared[kBatch];
-  static_cast<void>(kernels.test_boxes(box, to_node, node, kFar, squared));
-  const Centre centre = centre_in(box, to_node);
-  std::uint32_t best = 0;
-  float best_apart = kFar;
-  for (std::uint32_t i = 0; i < node.children; ++i) {
-    if (squared[i] > squared[best]) continue;
-    const float apart = apart_squared(centre, node, i);
-    if (squared[i] < squared[best] || apart < best_apart) {
-      best = i;
-      best_apart = apart;
-    }
-  }
-  return best;
+  BoxTest test;
+  for (float& least : test.passed) least = kFar;
+  static_cast<void>(kernels.test_boxes(box, to_node, node, 1, kFar, test));
+  const auto last = static_cast<std::int32_t>(node.children) - 1;
+  std::uint32_t nearest = 0;
+  for (std::uint32_t i = 0; i < node.children; ++i) nearest = test.place[i] == last ? i : nearest;
+  return nearest;
 }
 
 /// A leaf of a region as a child of the node above it.

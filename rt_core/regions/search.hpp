@@ -29,7 +29,6 @@ struct Candidate {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   float squared = 0;  ///< bound, in units
-  float centres = 0;  ///< squared distance of the centres where the bound is 0: which goes first
 };
 
 /// Depth first: each of two trees is descended at most kMaxRegionDepth times, each time leaving at

@@ -9,9 +9,10 @@
 // may be linked into another.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
-#if defined(__AVX2__)
+#if defined(__SSE2__)
 #include <immintrin.h>
 #endif
 
@@ -45,12 +46,28 @@ PALPATE_LANES Floats load(const float* from) noexcept {
   __builtin_memcpy(&v, from, sizeof v);
   return v;
 }
+PALPATE_LANES Ints load(const std::int32_t* from) noexcept {
+  Ints v;
+  __builtin_memcpy(&v, from, sizeof v);
+  return v;
+}
 PALPATE_LANES void store(Floats v, float* to) noexcept { __builtin_memcpy(to, &v, sizeof v); }
+PALPATE_LANES void store(Ints v, std::int32_t* to) noexcept { __builtin_memcpy(to, &v, sizeof v); }
 PALPATE_LANES Floats all(float v) noexcept { return v - Floats{}; }
+PALPATE_LANES Ints all(std::int32_t v) noexcept { return v - Ints{}; }
+/// 0, 1, 2 and so on.
+PALPATE_LANES Ints counting() noexcept {
+  Ints v;
+  for (int i = 0; i < kLanes; ++i) v[i] = i;
+  return v;
+}
 
 PALPATE_LANES Floats magnitude(Floats v) noexcept {
   return reinterpret_cast<Floats>(reinterpret_cast<Ints>(v) & 0x7fffffff);
 }
+
+/// 1 where the mask is set.
+PALPATE_LANES Ints ones(Ints mask) noexcept { return -mask; }
 
 /// Bit i set where lane i of the mask is.
 PALPATE_LANES std::uint32_t bits(Ints mask) noexcept {
@@ -74,15 +91,52 @@ using Ints = int;  ///< 0 or not
 
 PALPATE_LANES Floats load(const float* from) noexcept { return *from; }
 PALPATE_LANES void store(Floats v, float* to) noexcept { *to = v; }
+PALPATE_LANES Ints load(const std::int32_t* from) noexcept { return *from; }
+PALPATE_LANES void store(Ints v, std::int32_t* to) noexcept { *to = v; }
 PALPATE_LANES Floats all(float v) noexcept { return v; }
+PALPATE_LANES Ints all(std::int32_t v) noexcept { return v; }
+PALPATE_LANES Ints counting() noexcept { return 0; }
 PALPATE_LANES Floats magnitude(Floats v) noexcept { return __builtin_fabsf(v); }
+PALPATE_LANES Ints ones(Ints mask) noexcept { return mask != 0 ? 1 : 0; }
 PALPATE_LANES std::uint32_t bits(Ints mask) noexcept { return mask != 0 ? 1 : 0; }
 
 #endif
 
-/// Second operand where the comparison is false, NaN included.
+PALPATE_LANES Ints as_bits(Floats v) noexcept { return std::bit_cast<Ints>(v); }
+
+/// Second operand where the comparison is false, NaN included: what x86 has an instruction for.
+#if PALPATE_VECTORS && defined(__AVX512F__)
+// Masked, with all lanes: without a mask the header of GCC 12 warns of itself.
+PALPATE_LANES Floats least(Floats a, Floats b) noexcept {
+  return reinterpret_cast<Floats>(
+      _mm512_maskz_min_ps(0xffff, reinterpret_cast<__m512>(a), reinterpret_cast<__m512>(b)));
+}
+PALPATE_LANES Floats most(Floats a, Floats b) noexcept {
+  return reinterpret_cast<Floats>(
+      _mm512_maskz_max_ps(0xffff, reinterpret_cast<__m512>(a), reinterpret_cast<__m512>(b)));
+}
+#elif PALPATE_VECTORS && defined(__AVX2__)
+PALPATE_LANES Floats least(Floats a, Floats b) noexcept {
+  return reinterpret_cast<Floats>(
+      _mm256_min_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b)));
+}
+PALPATE_LANES Floats most(Floats a, Floats b) noexcept {
+  return reinterpret_cast<Floats>(
+      _mm256_max_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b)));
+}
+#elif PALPATE_VECTORS && defined(__SSE2__)
+PALPATE_LANES Floats least(Floats a, Floats b) noexcept {
+  return reinterpret_cast<Floats>(
+      _mm_min_ps(reinterpret_cast<__m128>(a), reinterpret_cast<__m128>(b)));
+}
+PALPATE_LANES Floats most(Floats a, Floats b) noexcept {
+  return reinterpret_cast<Floats>(
+      _mm_max_ps(reinterpret_cast<__m128>(a), reinterpret_cast<__m128>(b)));
+}
+#else
 PALPATE_LANES Floats least(Floats a, Floats b) noexcept { return a < b ? a : b; }
 PALPATE_LANES Floats most(Floats a, Floats b) noexcept { return a > b ? a : b; }
+#endif
 PALPATE_LANES Floats clamp01(Floats v) noexcept { return least(most(v, Floats{}), all(1.0f)); }
 
 /// Three-vectors, lane by lane.

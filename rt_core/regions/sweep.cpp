@@ -64,11 +64,10 @@ class Sweep {
   void split_a(std::uint32_t node, std::uint32_t b) noexcept {
     const RegionNode& over_b = frame_.b->region_nodes[node_of(b)];
     const RegionNode& parent = frame_.a->region_nodes[node];
-    float squared[kBatch];
     const std::uint32_t near =
-        test(box_of(over_b, slot_of(b)), frame_.b_to_a, parent, frame_.scale2_a, squared);
+        test(box_of(over_b, slot_of(b)), frame_.b_to_a, parent, frame_.scale2_a);
     for (std::uint32_t i = 0; i < parent.children; ++i) {
-      const Candidate child = {child_name(node, i), b, squared[i] * frame_.scale2_a};
+      const Candidate child = {child_name(node, i), b, test_.squared[i]};
       if ((near >> i & 1u) != 0) {
         push(child);
       } else {
@@ -80,12 +79,11 @@ class Sweep {
   void split_b(std::uint32_t a, std::uint32_t node) noexcept {
     const RegionNode& over_a = frame_.a->region_nodes[node_of(a)];
     const RegionNode& parent = frame_.b->region_nodes[node];
-    float squared[kBatch];
     const std::uint32_t near =
-        test(box_of(over_a, slot_of(a)), frame_.a_to_b, parent, frame_.scale2_b, squared);
+        test(box_of(over_a, slot_of(a)), frame_.a_to_b, parent, frame_.scale2_b);
     float far = std::numeric_limits<float>::max();
     for (std::uint32_t i = 0; i < parent.children; ++i) {
-      const float s = squared[i] * frame_.scale2_b;
+      const float s = test_.squared[i];
       if ((near >> i & 1u) != 0) {
         push({a, child_name(node, i), s});
       } else {
@@ -95,11 +93,10 @@ class Sweep {
     cover(a, far);
   }
 
-  std::uint32_t test(const Box& box, const Transform& to_node, const RegionNode& node, float scale2,
-                     float (&out)[kBatch]) noexcept {
+  std::uint32_t test(const Box& box, const Transform& to_node, const RegionNode& node,
+                     float scale2) noexcept {
     pace_.charge(1);
-    return children_of(node) &
-           kernels_.test_boxes(box, to_node, node, limit_squared_ / scale2, out);
+    return kernels_.test_boxes(box, to_node, node, scale2, limit_squared_, test_);
   }
 
   void push(const Candidate& c) noexcept {
@@ -121,6 +118,7 @@ class Sweep {
   Pace& pace_;
   float limit_squared_;
   std::span<float> out_squared_;
+  BoxTest test_{};
   std::uint32_t size_ = 0;
 };
 

@@ -59,15 +59,15 @@ const Case kCases[] = {
     {"regions, exact",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .exact = true},
      kUnlimited,
-     0x42852ea968082a45},
+     0x370127212b3ac45c},
     {"regions, 100 units",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      100,
-     0x60f26cd6500e80f5},
+     0x55341679237e6b99},
     {"regions, tolerance",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .force_tolerance_N = 3},
      kUnlimited,
-     0xe696e21be31f63dd},
+     0xc741fdd9bdc22d3b},
 };
 constexpr int kTicks = 200;
 

@@ -7,9 +7,11 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <random>
 #include <span>
+#include <vector>
 
 #include "tests/support/triangle_distance.hpp"
 
@@ -162,7 +164,7 @@ std::array<Vec3d, 8> corners_of(const Vec3d (&axes)[3], Vec3d centre, const doub
 }
 
 struct Boxes {
-  Box one;
+  Box one{};
   image::RegionNode node{};
   Transform map;
   std::array<Vec3d, 8> corners_of_one;  // in the node's coordinates
@@ -191,6 +193,7 @@ Boxes random_boxes(Random& random) {
   boxes.one.half[3] = 0;
   boxes.corners_of_one = corners_of(axes, centre, half);
   for (Vec3d& p : boxes.corners_of_one) p = mapped(boxes.map, p);
+  boxes.node.children = kBatch;
   for (std::uint32_t i = 0; i < kBatch; ++i) {
     draw(0.3, axes, centre, half);
     const double row[3] = {centre.x, centre.y, centre.z};
@@ -227,14 +230,14 @@ TEST(RegionKernels, BoxBound_never_exceeds_the_distance_of_two_points_of_the_box
   int positive = 0;
   for (int round = 0; round < 1000; ++round) {
     const Boxes boxes = random_boxes(random);
-    float squared[kBatch];
+    BoxTest test{};
     const std::uint32_t near =
-        best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 0.25f, squared);
+        best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, 0.25f, test);
     for (std::uint32_t i = 0; i < kBatch; ++i) {
-      const double bound = std::sqrt(double(squared[i]));
+      const double bound = std::sqrt(double(test.squared[i]));
       ASSERT_LE(bound, nearest_points(random, boxes.corners_of_one, boxes.corners[i]) +
                            1e-6 * (1 + double(boxes.map.scale)));
-      ASSERT_EQ((near >> i & 1) != 0, squared[i] < 0.25f);
+      ASSERT_EQ((near >> i & 1) != 0, test.squared[i] < 0.25f);
       positive += bound > 0 ? 1 : 0;
     }
   }
@@ -249,9 +252,71 @@ TEST(RegionKernels, BoxBound_of_aligned_boxes_is_their_distance) {
     boxes.node.axes[0][i] = boxes.node.axes[4][i] = boxes.node.axes[8][i] = 1;
     for (auto& half : boxes.node.half) half[i] = 0.5f;
   }
-  float squared[kBatch];
-  best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, squared);
-  EXPECT_EQ(squared[5], 2.0f * 2.0f + 1.0f);
+  BoxTest test{};
+  best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, 1, test);
+  EXPECT_EQ(test.squared[5], 2.0f * 2.0f + 1.0f);
+  best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 9, 1, test);
+  EXPECT_EQ(test.squared[5], 9 * (2.0f * 2.0f + 1.0f));
+}
+
+TEST(RegionKernels, Boxes_are_placed_by_how_near_they_are) {
+  constexpr float kFar = std::numeric_limits<float>::max();
+  Random random(5);
+  int overlapping = 0;
+  for (int round = 0; round < 1500; ++round) {
+    Boxes boxes = random_boxes(random);
+    boxes.node.children = 1 + static_cast<std::uint32_t>(round) % kBatch;
+    const float below = round % 3 == 0 ? kFar : 0.25f;
+    BoxTest test{};
+    std::fill_n(test.passed, kBatch, kFar);
+    const std::uint32_t near =
+        best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, below, test);
+    const Vec3d centre =
+        mapped(boxes.map, {double(boxes.one.x[3]), double(boxes.one.y[3]), double(boxes.one.z[3])});
+    const auto apart = [&](std::uint32_t i) {
+      const auto& c = boxes.node.centre;
+      return squared_norm(centre - Vec3d{double(c[0][i]), double(c[1][i]), double(c[2][i])});
+    };
+    std::vector<std::uint32_t> order;  // farthest first
+    float least_passed = kFar;
+    for (std::uint32_t i = 0; i < boxes.node.children; ++i) {
+      if ((near >> i & 1) != 0)
+        order.push_back(i);
+      else
+        least_passed = std::min(least_passed, test.squared[i]);
+    }
+    ASSERT_EQ(near >> boxes.node.children, 0u);
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t p, std::uint32_t q) { return test.place[p] < test.place[q]; });
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      ASSERT_EQ(std::size_t(test.place[order[k]]), k);
+      if (k == 0) continue;
+      const float farther = test.squared[order[k - 1]], nearer = test.squared[order[k]];
+      ASSERT_LE(nearer, farther * (1 + 3e-6f));
+      if (farther == 0) {
+        ASSERT_LE(apart(order[k]), apart(order[k - 1]) * (1 + 1e-5));
+        ++overlapping;
+      }
+    }
+    const float passed = *std::min_element(test.passed, test.passed + boxes.node.children);
+    ASSERT_EQ(passed, least_passed);
+  }
+  EXPECT_GT(overlapping, 20);
+}
+
+TEST(RegionKernels, BoxTest_keeps_the_least_of_what_was_passed_over) {
+  Boxes boxes;
+  boxes.map = in_float(Mat3d{}, Vec3d{3, 0, 0}, 1);
+  boxes.node.children = kBatch;
+  BoxTest test{};
+  std::fill_n(test.passed, kBatch, 7.0f);
+  best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, 1, test);
+  EXPECT_EQ(test.passed[3], 7.0f);
+  boxes.map = in_float(Mat3d{}, Vec3d{2, 0, 0}, 1);
+  boxes.node.axes[0][3] = 1;
+  best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, 1, test);
+  EXPECT_EQ(test.passed[3], 4.0f);
+  EXPECT_EQ(test.passed[2], 7.0f);
 }
 
 TEST(RegionKernels, Witnesses_are_as_far_apart_as_the_triangles) {
@@ -307,10 +372,13 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
       ASSERT_EQ(std::memcmp(found_first.on_a, found_other.on_a, sizeof found_first.on_a), 0);
       ASSERT_EQ(found_first.crossing, found_other.crossing);
     }
-    const std::uint32_t near = tables()[0]->test_boxes(boxes.one, boxes.map, boxes.node, 1, first);
+    BoxTest expected{};
+    const std::uint32_t near =
+        tables()[0]->test_boxes(boxes.one, boxes.map, boxes.node, 1.5f, 1, expected);
     for (const Kernels* table : tables()) {
-      ASSERT_EQ(near, table->test_boxes(boxes.one, boxes.map, boxes.node, 1, other));
-      ASSERT_EQ(std::memcmp(first, other, sizeof first), 0) << table->name;
+      BoxTest test{};
+      ASSERT_EQ(near, table->test_boxes(boxes.one, boxes.map, boxes.node, 1.5f, 1, test));
+      ASSERT_EQ(std::memcmp(&expected, &test, sizeof test), 0) << table->name;
     }
   }
 }
