@@ -20,8 +20,8 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/bench/clocks.hpp"
 #include "tools/bench/scenes.hpp"
+#include "tools/palpate/clocks.hpp"
 
 namespace palpate::bench {
 namespace {
@@ -86,7 +86,8 @@ struct Allowed {
   }
   [[nodiscard]] Budget from(std::uint64_t now_ns) const {
     if (in_units) return {.units = static_cast<std::uint64_t>(amount)};
-    return {.clock_ns = wall_ns, .deadline_ns = now_ns + static_cast<std::uint64_t>(1e3 * amount)};
+    return {.clock_ns = cli::wall_ns,
+            .deadline_ns = now_ns + static_cast<std::uint64_t>(1e3 * amount)};
   }
   double amount = 0;
   bool in_units = false;
@@ -99,12 +100,12 @@ Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, All
   Walk walk;
   for (std::uint64_t i = 0; i < ticks; ++i) {
     const Place& place = places[walk.next()];
-    const std::uint64_t processor_start = processor_ns();
-    const std::uint64_t start = wall_ns();
+    const std::uint64_t processor_start = cli::processor_ns();
+    const std::uint64_t start = cli::wall_ns();
     const Budget budget = allowed.from(start);
     const TickResult r = bench.tick_at(place.pose, budget);
-    const std::uint64_t end = wall_ns();
-    const double busy = us_since(processor_start, processor_ns());
+    const std::uint64_t end = cli::wall_ns();
+    const double busy = us_since(processor_start, cli::processor_ns());
     row.busy_us += us_since(start, end);
     row.units += static_cast<double>(r.queries);
     if (place.touches && r.contacts.empty()) ++row.lost;

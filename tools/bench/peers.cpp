@@ -19,11 +19,11 @@
 #include <vector>
 
 #include "host_bake/mesh/read.hpp"
-#include "tools/bench/clocks.hpp"
 #ifdef PALPATE_BENCH_BULLET
 #include "tools/bench/mesh_bullet.hpp"
 #endif
 #include "tools/bench/mesh_fcl.hpp"
+#include "tools/palpate/clocks.hpp"
 #include "tools/palpate/poses.hpp"
 #include "tools/palpate/scene_engine.hpp"
 #include "tools/palpate/sweep_figures.hpp"
@@ -55,9 +55,9 @@ void run(Query& query, const cli::PoseTrack& track, std::vector<Pose> poses) {
   query.answers.resize(track.ticks.size());
   for (std::size_t i = 0; i < track.ticks.size(); ++i) {
     track.apply(i, poses);
-    const std::uint64_t start = processor_ns();
+    const std::uint64_t start = cli::processor_ns();
     query.answers[i] = query.ask(poses);
-    query.us[i].push_back(static_cast<double>(processor_ns() - start) * 1e-3);
+    query.us[i].push_back(static_cast<double>(cli::processor_ns() - start) * 1e-3);
   }
 }
 

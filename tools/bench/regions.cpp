@@ -31,10 +31,10 @@
 #include <vector>
 
 #include "host_bake/models/models.hpp"
-#include "tools/bench/clocks.hpp"
 #include "tools/bench/scenes.hpp"
 #if defined(PALPATE_BENCH_FCL)
 #include "tools/bench/mesh_fcl.hpp"
+#include "tools/palpate/clocks.hpp"
 #endif
 
 namespace palpate::bench {
@@ -52,8 +52,10 @@ constexpr SceneName kScenes[] = {{"jaws", "jaw_lower", "jaw_upper", true},
 Budget within(double budget_us) {
   Budget budget;
   if (budget_us > 0) {
-    budget.clock_ns = processor_ns;
-    budget.deadline_ns = processor_ns() + static_cast<std::uint64_t>(budget_us * 1e3);
+    static cli::ProcessorClock clock;
+    budget.clock_ns = cli::ProcessorClock::read;
+    budget.clock_context = &clock;
+    budget.deadline_ns = clock.now_ns() + static_cast<std::uint64_t>(budget_us * 1e3);
   }
   return budget;
 }
@@ -84,9 +86,9 @@ struct Run {
 #if defined(PALPATE_BENCH_FCL)
 using Peer = FclPair;
 double peer_us(const Peer& peer, const Pose& pose) {
-  const std::uint64_t start = processor_ns();
+  const std::uint64_t start = cli::processor_ns();
   const double distance = peer.distance(pose, {});
-  const double us = static_cast<double>(processor_ns() - start) * 1e-3;
+  const double us = static_cast<double>(cli::processor_ns() - start) * 1e-3;
   return distance >= 0 ? us : 0;
 }
 #else
@@ -115,9 +117,9 @@ Run run(Bench& bench, const std::vector<Pose>& poses, const Plan& plan) {
   bench.forget();
   for (const Pose& pose : poses) {
     if (plan.cold) bench.forget();
-    const std::uint64_t start = processor_ns();
+    const std::uint64_t start = cli::processor_ns();
     const TickResult r = bench.tick_at(pose, budget_of(plan));
-    out.us.push_back(static_cast<double>(processor_ns() - start) * 1e-3);
+    out.us.push_back(static_cast<double>(cli::processor_ns() - start) * 1e-3);
     out.contacts.push_back(static_cast<double>(r.contacts.size()));
     out.near.push_back(static_cast<double>(r.front_nodes));
     out.units.push_back(static_cast<double>(r.queries));

@@ -12,7 +12,12 @@
 namespace palpate::bench {
 namespace {
 
-constexpr Limits kLimits{.nodes = 1u << 19, .contacts = 1u << 16};
+/// More than any scene needs; regions, which are few, no more than stays in the caches when it is
+/// written anew.
+Limits limits_of(EngineKind engine) {
+  if (engine == EngineKind::levels) return {.nodes = 1u << 19, .contacts = 1u << 16};
+  return {.nodes = 1, .contacts = 1u << 12};
+}
 
 Vec3d centre_of(const Body& body) {
   const double* c = body.view.header->centre_m;
@@ -98,13 +103,14 @@ Body::Body(const char* model, double delta_rel, bake::ForEngine engine, std::siz
 
 Bench::Bench(const Body& a, const Body& b, const Settings& settings)
     : views_{a.view, b.view}, settings_(settings) {
-  bytes_ = required_bytes(scene(), kLimits, settings_.engine);
+  bytes_ = required_bytes(scene(), limits_of(settings_.engine), settings_.engine);
   memory_.reset(new (std::align_val_t(64)) std::byte[bytes_]);
   forget();
 }
 
 void Bench::forget() {
-  if (create(scene(), settings_, kLimits, {memory_.get(), bytes_}, engine_) != Status::ok) {
+  const Limits limits = limits_of(settings_.engine);
+  if (create(scene(), settings_, limits, {memory_.get(), bytes_}, engine_) != Status::ok) {
     std::abort();
   }
   if (kernels_ != nullptr) engine_->regions.kernels = kernels_;
@@ -119,6 +125,7 @@ TickResult Bench::tick_at(const Pose& pose, const Budget& budget) {
   const Pose poses[2] = {pose, {}};
   TickResult result;
   if (tick(*engine_, poses, budget, result) != Status::ok) std::abort();
+  if (result.certificate.truncated_by_memory) std::abort();
   return result;
 }
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/palpate/replay_loop.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <limits>
 #include <string>
 
+#include "tools/palpate/clocks.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/scene_engine.hpp"
 #include "tools/palpate/scene_forces.hpp"
@@ -17,13 +16,6 @@ namespace {
 
 constexpr std::size_t kShowEvery = 64;  // ticks
 
-/// @param clock  of a clockid_t
-std::uint64_t now_ns(void* clock) {
-  timespec now{};
-  clock_gettime(*static_cast<clockid_t*>(clock), &now);
-  return std::uint64_t(now.tv_sec) * 1'000'000'000 + std::uint64_t(now.tv_nsec);
-}
-
 class Replay {
  public:
   Replay(const config::Scene& scene, const PoseTrack& track, const ReplayOptions& options)
@@ -33,12 +25,12 @@ class Replay {
         engine_(scene_),
         surface_points_(engine_.images(), scene_.pairs),
         unlimited_(!options.budget_units && !scene.budget_us),
-        clock_(options.processor_time ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC) {
+        clock_ns_(options.processor_time ? ProcessorClock::read : wall_ns) {
     if (options.budget_units) budget_.units = *options.budget_units;
     if (scene.budget_us) budget_ns_ = static_cast<std::uint64_t>(*scene.budget_us * 1e3);
     if (budget_ns_ || options.profile) {
-      budget_.clock_ns = now_ns;
-      budget_.clock_context = &clock_;
+      budget_.clock_ns = clock_ns_;
+      budget_.clock_context = &processor_clock_;
     }
   }
 
@@ -76,11 +68,11 @@ class Replay {
 
   TickResult timed_tick(std::size_t i, std::span<const Pose> poses, std::uint64_t& out_ns) {
     TickResult result;
-    const std::uint64_t start_ns = now_ns(&clock_);
+    const std::uint64_t start_ns = clock_ns_(&processor_clock_);
     budget_.deadline_ns =
         budget_ns_ ? start_ns + *budget_ns_ : std::numeric_limits<std::uint64_t>::max();
     const Status status = tick(engine_.engine(), poses, budget_, result);
-    out_ns = now_ns(&clock_) - start_ns;
+    out_ns = clock_ns_(&processor_clock_) - start_ns;
     if (status != Status::ok) {
       throw Failure(kOther, std::string("the engine failed (") + describe(status) + ")",
                     scene_.file.string() + ", tick " + std::to_string(i),
@@ -105,7 +97,8 @@ class Replay {
   SceneEngine engine_;
   SurfacePoints surface_points_;
   bool unlimited_;
-  clockid_t clock_;
+  ProcessorClock processor_clock_;
+  std::uint64_t (*clock_ns_)(void*);
   Budget budget_;
   std::optional<std::uint64_t> budget_ns_;
 };
