@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/force/depths.hpp"
 
-#include <array>
-
-#include "rt_core/base/queue.hpp"
 #include "rt_core/force/directions.hpp"
 
 namespace palpate::force {
@@ -14,12 +11,6 @@ constexpr double kCornerCosine = 0.57735026918962573;
 constexpr double kCornerSine = 0.81649658092772603;
 constexpr double kRoundingUp = 1 + 1e-12;
 constexpr double kSameCosine = 1 - 1e-12;  // a microradian apart
-
-struct Deeper {
-  bool operator()(const Ranked& a, const Ranked& b) const noexcept {
-    return a.depth_m > b.depth_m || (a.depth_m == b.depth_m && a.felt < b.felt);
-  }
-};
 
 double magnitude(double v) noexcept { return v < 0 ? -v : v; }
 
@@ -47,30 +38,6 @@ double most_kinship(std::uint32_t side, Vec3d n) noexcept {
   return nearest < 1 ? kRoundingUp * kinship(nearest) : 1;
 }
 
-/// Lays the deepest of one side side by side; of the contacts, only `ranked` are of that side.
-std::uint32_t keep_deepest(std::span<const Felt> felt, std::span<Ranked> ranked,
-                           DeepLanes* lanes) noexcept {
-  MinQueue<Ranked, Deeper> queue(ranked);
-  queue.fill();
-  std::uint32_t count = 0;
-  Vec3d last{};
-  for (; !queue.empty() && count < DeepSides::kMostLooks; queue.pop()) {
-    const Felt& next = felt[queue.top().felt];
-    // It has nothing to say that the deeper one has not, and would use up looks.
-    if (count > 0 && dot(last, next.direction) >= kSameCosine) continue;
-    last = next.direction;
-    DeepLanes& to = lanes[count / DeepLanes::kLanes];
-    const std::uint32_t lane = count % DeepLanes::kLanes;
-    if (lane == 0) to = {};
-    to.x[lane] = last.x;
-    to.y[lane] = last.y;
-    to.z[lane] = last.z;
-    to.depth_m[lane] = next.depth_m;
-    ++count;
-  }
-  return count;
-}
-
 /// What every 64-bit target computes at once, in the same bits as one by one.
 using Two = double __attribute__((vector_size(2 * sizeof(double))));
 
@@ -94,41 +61,64 @@ double most_of(const DeepLanes& lanes, Vec3d n, double most_m) noexcept {
 
 }  // namespace
 
-Depths::Depths(std::span<const Felt> felt, std::span<Ranked> ranking, DeepSides& sides) noexcept
-    : sides_(sides) {
+Depths::Depths(std::span<Felt> felt, std::span<Ranked> ranking, DeepSides& sides) noexcept
+    : felt_(felt), sides_(sides) {
   std::array<std::uint32_t, DeepSides::kSides + 1> end{};  // where the side before ends
-  for (const Felt& f : felt) ++end[side_of(f.direction) + 1];
+  for (Felt& f : felt) {
+    f.side = side_of(f.direction);
+    ++end[f.side + 1];
+  }
   for (std::uint32_t side = 0; side < DeepSides::kSides; ++side) end[side + 1] += end[side];
   for (std::uint32_t i = 0; i < felt.size(); ++i) {
-    ranking[end[side_of(felt[i].direction)]++] = {felt[i].depth_m, i};
+    ranking[end[felt[i].side]++] = {felt[i].depth_m, i};
   }
   std::uint32_t first = 0;
   for (std::uint32_t side = 0; side < DeepSides::kSides; ++side) {
-    const std::span<Ranked> ranked = ranking.subspan(first, end[side] - first);
-    sides.count[side] = keep_deepest(felt, ranked, sides.lanes[side]);
+    of_side_[side].waiting = MinQueue<Ranked, Deeper>(ranking.subspan(first, end[side] - first));
+    of_side_[side].waiting.fill();
     first = end[side];
   }
 }
 
-double Depths::around(const Felt& f) const noexcept {
-  const std::uint32_t own = side_of(f.direction);
-  double most_m = around(f, own, f.depth_m);
+double Depths::around(const Felt& f) noexcept {
+  double most_m = around(f, f.side, f.depth_m);
   for (std::uint32_t side = 0; side < DeepSides::kSides; ++side) {
-    if (side != own) most_m = around(f, side, most_m);
+    if (side != f.side) most_m = around(f, side, most_m);
   }
   return most_m;
 }
 
-double Depths::around(const Felt& f, std::uint32_t side, double most_m) const noexcept {
+double Depths::around(const Felt& f, std::uint32_t side, double most_m) noexcept {
+  const Side& of = of_side_[side];
   const DeepLanes* lanes = sides_.lanes[side];
-  const std::uint32_t count = sides_.count[side];
-  if (count == 0 || lanes->depth_m[0] <= most_m) return most_m;
+  if (of.count == 0) lay(side);
+  if (of.count == 0 || lanes->depth_m[0] <= most_m) return most_m;
   const double kinship_there = most_kinship(side, f.direction);
-  for (std::uint32_t i = 0; i < count; i += DeepLanes::kLanes, ++lanes) {
-    if (lanes->depth_m[0] * kinship_there <= most_m) break;
+  for (std::uint32_t i = 0; i < DeepSides::kMostLooks; i += DeepLanes::kLanes, ++lanes) {
+    if (i == of.count) lay(side);
+    if (i >= of.count || lanes->depth_m[0] * kinship_there <= most_m) break;
     most_m = most_of(*lanes, f.direction, most_m);
   }
   return most_m;
+}
+
+/// The deepest that wait, as many as are looked at at once.
+void Depths::lay(std::uint32_t side) noexcept {
+  Side& of = of_side_[side];
+  DeepLanes& to = sides_.lanes[side][of.count / DeepLanes::kLanes];
+  for (std::uint32_t lane = 0; lane < DeepLanes::kLanes && !of.waiting.empty(); of.waiting.pop()) {
+    const Felt& next = felt_[of.waiting.top().felt];
+    // It has nothing to say that the deeper one has not, and would use up looks.
+    if (of.count > 0 && dot(of.last, next.direction) >= kSameCosine) continue;
+    of.last = next.direction;
+    if (lane == 0) to = {};
+    to.x[lane] = of.last.x;
+    to.y[lane] = of.last.y;
+    to.z[lane] = of.last.z;
+    to.depth_m[lane] = next.depth_m;
+    ++lane;
+    ++of.count;
+  }
 }
 
 }  // namespace palpate::force

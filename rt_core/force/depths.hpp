@@ -2,9 +2,11 @@
 // The largest depth felt in nearly a direction, over all contacts.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
+#include "rt_core/base/queue.hpp"
 #include "rt_core/force/places.hpp"
 #include "rt_core/geometry/vec3.hpp"
 
@@ -18,12 +20,19 @@ struct Felt {
   double mass = 0;     ///< see penalty.hpp
   Spot spot;           ///< where it brought that
   std::uint32_t contact = 0;
+  std::uint32_t side = 0;  ///< of a box, that the direction is nearest to
 };
 
 /// A contact waiting to be put in order.
 struct Ranked {
   double depth_m = 0;
   std::uint32_t felt = 0;
+};
+
+struct Deeper {
+  bool operator()(const Ranked& a, const Ranked& b) const noexcept {
+    return a.depth_m > b.depth_m || (a.depth_m == b.depth_m && a.felt < b.felt);
+  }
 };
 
 /// Contacts side by side, to be looked at at once.
@@ -44,26 +53,37 @@ struct DeepSides {
   static constexpr std::uint32_t kMostLooks = 64;
 
   DeepLanes lanes[kSides][kMostLooks / DeepLanes::kLanes];
-  std::uint32_t count[kSides];  ///< of contacts
 };
 
 /// Contacts in the order of depth, apart for the six sides of a box that their directions are
 /// nearest to, so that the largest of depth times kinship is found after a few looks.
 class Depths {
  public:
-  /// @param ranking  scratch, [felt]
+  /// @param felt     outlives this
+  /// @param ranking  scratch, [felt], outlives this
   /// @param sides    scratch, outlives this
-  /// O(n log n)
-  Depths(std::span<const Felt> felt, std::span<Ranked> ranking, DeepSides& sides) noexcept;
+  /// O(n)
+  Depths(std::span<Felt> felt, std::span<Ranked> ranking, DeepSides& sides) noexcept;
 
   /// Largest depth_m * kinship over the contacts within 90 degrees of f's direction, f itself
-  /// included. Continuous in all of them. O(1): at most 6 kMostLooks looks.
-  [[nodiscard]] double around(const Felt& f) const noexcept;
+  /// included. Continuous in all of them. Puts contacts in order as far as it looks. O(1), at most
+  /// 6 kMostLooks looks, and O(n log n) for all contacts together
+  [[nodiscard]] double around(const Felt& f) noexcept;
 
  private:
-  [[nodiscard]] double around(const Felt& f, std::uint32_t side, double most_m) const noexcept;
+  /// Contacts of one side: the deepest are laid side by side, the others wait.
+  struct Side {
+    MinQueue<Ranked, Deeper> waiting{{}};
+    std::uint32_t count = 0;  ///< laid
+    Vec3d last{};             ///< direction of the last one laid
+  };
 
-  const DeepSides& sides_;
+  [[nodiscard]] double around(const Felt& f, std::uint32_t side, double most_m) noexcept;
+  void lay(std::uint32_t side) noexcept;
+
+  std::span<const Felt> felt_;
+  DeepSides& sides_;
+  std::array<Side, DeepSides::kSides> of_side_;
 };
 
 }  // namespace palpate::force

@@ -61,7 +61,7 @@ Penalty penalty(std::span<Contact> contacts, std::span<const BodyPair> pairs, st
   weigh(felt, tool_pose, settings, workspace);
   Directions directions;
   for (const Felt& f : felt) directions.add(f.direction, f.mass);
-  const Depths depths(felt, workspace.ranking, *workspace.sides);
+  Depths depths(felt, workspace.ranking, *workspace.sides);
 
   Penalty out;
   out.places_full = workspace.copies.full() || workspace.places.full();

@@ -47,14 +47,28 @@ bool on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) noexcept {
          squared_distance_to_segment(p, c, a) <= kNear2;
 }
 
+/// Is every one of the hull vertices a corner of the triangle?
+bool holds(const Triangle& t, const std::uint32_t (&vertices)[3], std::uint32_t count) noexcept {
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const std::uint32_t v = vertices[k];
+    if (v != t.vertices[0] && v != t.vertices[1] && v != t.vertices[2]) return false;
+  }
+  return true;
+}
+
 /// Is a point (piece coordinates) that combines `count` hull vertices on the patch of the piece?
-bool on_patch(const ImageView& image, const Piece& piece, Vec3d point,
+bool on_patch(const ImageView& image, const Piece& piece, Vec3d point, const std::uint32_t (&of)[3],
               std::uint32_t count) noexcept {
   if (count == 1 || has(piece, PieceFlag::all_real))
     return true;  // hull vertices are vertices of the mesh
+  const Triangle* triangles = image.triangles.data() + piece.first_triangle;
+  for (std::uint32_t i = 0; i < piece.triangles; ++i) {
+    if (holds(triangles[i], of, count)) return true;
+  }
+  // Faces of the hull may be cut into other triangles than the patch is.
   const image::Vertex* vertices = image.vertices.data() + piece.first_vertex;
   for (std::uint32_t i = 0; i < piece.triangles; ++i) {
-    const Triangle& t = image.triangles[piece.first_triangle + i];
+    const Triangle& t = triangles[i];
     if (on_triangle(point, position(vertices[t.vertices[0]]), position(vertices[t.vertices[1]]),
                     position(vertices[t.vertices[2]]))) {
       return true;
@@ -94,11 +108,12 @@ Vec3d to_b(const PairState& pair, Vec3d point) noexcept {
 }
 
 bool witness_a_real(const PairState& pair, const Piece& a, const convex::Distance& d) noexcept {
-  return on_patch(*pair.image_a, a, (1.0 / pair.scale_a) * d.point_a, d.count_a);
+  return on_patch(*pair.image_a, a, (1.0 / pair.scale_a) * d.point_a, d.vertices_a, d.count_a);
 }
 
 bool witness_b_real(const PairState& pair, const Piece& b, const convex::Distance& d) noexcept {
-  return on_patch(*pair.image_b, b, (1.0 / pair.scale_b) * to_b(pair, d.point_b), d.count_b);
+  return on_patch(*pair.image_b, b, (1.0 / pair.scale_b) * to_b(pair, d.point_b), d.vertices_b,
+                  d.count_b);
 }
 
 LeafContact from_distance(const convex::Distance& d) noexcept {
