@@ -32,7 +32,8 @@ struct Fall {
 /// The normal of b's surface that is, the other way round, also one of a's, or as nearly as b's go.
 /// On a face a surface has one normal, on an edge those between its two faces', on a corner those
 /// that all ways over it lead away from. Turns the direction off the ways over a and over b by
-/// turns, eight times, and is continuous in it. Stays what it is where either place is on a face.
+/// turns, until it stays or eight times, and is continuous in it to a microradian. Stays what it is
+/// where either place is on a face.
 /// @param b_in_a  turns b's coordinates into those of a, which the directions are in
 /// @param normal  unit, from b to a: one of b's
 /// @return unit
