@@ -70,7 +70,7 @@ class Search {
   struct Tree {
     const ImageView& image;
     const Transform& to_here;
-    float scale2;
+    float scale2;  ///< squared units of its squared coordinates
   };
 
   Bounds finish() noexcept {
