@@ -89,13 +89,13 @@ double Depths::around(const Felt& f) noexcept {
 }
 
 double Depths::around(const Felt& f, std::uint32_t side, double most_m) noexcept {
-  const Side& of = of_side_[side];
-  const DeepLanes* lanes = sides_.lanes[side];
-  if (of.count == 0) lay(side);
+  Side& of = of_side_[side];
+  DeepLanes* lanes = sides_.lanes[side];
+  if (of.count == 0) lay(of, *lanes);
   if (of.count == 0 || lanes->depth_m[0] <= most_m) return most_m;
   const double kinship_there = most_kinship(side, f.direction);
   for (std::uint32_t i = 0; i < DeepSides::kMostLooks; i += DeepLanes::kLanes, ++lanes) {
-    if (i == of.count) lay(side);
+    if (i == of.count) lay(of, *lanes);
     if (i >= of.count || lanes->depth_m[0] * kinship_there <= most_m) break;
     most_m = most_of(*lanes, f.direction, most_m);
   }
@@ -103,9 +103,7 @@ double Depths::around(const Felt& f, std::uint32_t side, double most_m) noexcept
 }
 
 /// The deepest that wait, as many as are looked at at once.
-void Depths::lay(std::uint32_t side) noexcept {
-  Side& of = of_side_[side];
-  DeepLanes& to = sides_.lanes[side][of.count / DeepLanes::kLanes];
+void Depths::lay(Side& of, DeepLanes& to) noexcept {
   for (std::uint32_t lane = 0; lane < DeepLanes::kLanes && !of.waiting.empty(); of.waiting.pop()) {
     const Felt& next = felt_[of.waiting.top().felt];
     // It has nothing to say that the deeper one has not, and would use up looks.

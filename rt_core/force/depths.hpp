@@ -79,7 +79,7 @@ class Depths {
   };
 
   [[nodiscard]] double around(const Felt& f, std::uint32_t side, double most_m) noexcept;
-  void lay(std::uint32_t side) noexcept;
+  void lay(Side& of, DeepLanes& to) noexcept;
 
   std::span<const Felt> felt_;
   DeepSides& sides_;

@@ -10,6 +10,9 @@
 namespace palpate::regions {
 namespace {
 
+constexpr int kWidth = static_cast<int>(kBatch);
+constexpr float kFar = std::numeric_limits<float>::max();
+
 /// Column i of a box (an axis or the centre), turned. Scalar on purpose: the columns have just been
 /// written one float at a time, and reading them as vectors would wait for the stores.
 PALPATE_LANES void turn_column(const Box& from, const Transform& map, int i, Box& to) noexcept {
@@ -18,9 +21,6 @@ PALPATE_LANES void turn_column(const Box& from, const Transform& map, int i, Box
   to.y[i] = r[3] * from.x[i] + r[4] * from.y[i] + r[5] * from.z[i];
   to.z[i] = r[6] * from.x[i] + r[7] * from.y[i] + r[8] * from.z[i];
 }
-
-constexpr int kWidth = static_cast<int>(kBatch);
-constexpr float kFar = std::numeric_limits<float>::max();
 
 /// A box in the coordinates of the node.
 PALPATE_LANES Box mapped(const Box& box, const Transform& map) noexcept {

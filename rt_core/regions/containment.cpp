@@ -36,7 +36,7 @@ class Ray {
   Side run() noexcept {
     const Box box = ray_box();
     const Transform stay = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}, 1};
-    BoxTest test{};
+    BoxTest test;
     std::uint32_t size = 0;
     scratch_.stack[size++].a = 0;
     while (size > 0 && !met_edge_) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "rt_core/geometry/pose.hpp"
 #include "rt_core/image/region_format.hpp"
@@ -48,11 +49,15 @@ struct KernelScratch {
   alignas(64) float rows[112][kBatch];
 };
 
-/// What test_boxes() says of the boxes of a node.
+/// What test_boxes() says of the boxes of a node, and of those of earlier nodes.
 struct BoxTest {
-  alignas(64) float squared[kBatch];       ///< bounds
-  alignas(64) std::int32_t place[kBatch];  ///< of those near: how many others near are farther
-  alignas(64) float passed[kBatch];  ///< least bounds of those not near, kept from call to call
+  BoxTest() noexcept {
+    for (float& least : passed) least = std::numeric_limits<float>::max();
+  }
+  alignas(64) float squared[kBatch] = {};       ///< bounds
+  alignas(64) std::int32_t place[kBatch] = {};  ///< of those near: how many near are farther
+  alignas(
+      64) float passed[kBatch];  ///< least bounds of what was not near in any call, lane by lane
 };
 
 struct Kernels {
@@ -64,9 +69,8 @@ struct Kernels {
   /// large by at most 1e-6 of the farther box's distance from the origin. Fills all lanes; those
   /// beyond the last child repeat the first. Of boxes that overlap the nearer is the one whose
   /// centre is; of two as near to some 2e-6 the later.
-  /// @param unit2  squared unit of the bounds, in that of the node's image
-  /// @param below  squared; nearer boxes are near
-  /// @param out    passed holds what earlier calls left, or the largest of floats
+  /// @param unit2  squares of lengths in the node's image times this are in the unit of the bounds
+  /// @param below  squared, in the unit of the bounds; nearer boxes are near
   /// @return bit i set where child i is near
   std::uint32_t (*test_boxes)(const Box& box, const Transform& to_node,
                               const image::RegionNode& node, float unit2, float below,

@@ -46,7 +46,6 @@ class Search {
     best_squared_ = witness.known() ? witness.distance * witness.distance : kFar;
     scratch_.near.count = 0;
     if (witness.known()) scratch_.near.add(witness, 0);
-    for (float& least : test_.passed) least = kFar;
     lower_threshold();
   }
 
@@ -286,7 +285,6 @@ std::uint32_t nearest_child(const Kernels& kernels, const Box& box, const Transf
                             const RegionNode& node, Pace& pace) noexcept {
   pace.charge(1);
   BoxTest test;
-  for (float& least : test.passed) least = kFar;
   static_cast<void>(kernels.test_boxes(box, to_node, node, 1, kFar, test));
   const auto last = static_cast<std::int32_t>(node.children) - 1;
   std::uint32_t nearest = 0;

@@ -108,31 +108,15 @@ PALPATE_LANES Ints as_bits(Floats v) noexcept { return std::bit_cast<Ints>(v); }
 #if PALPATE_VECTORS && defined(__AVX512F__)
 // Masked, with all lanes: without a mask the header of GCC 12 warns of itself.
 PALPATE_LANES Floats least(Floats a, Floats b) noexcept {
-  return reinterpret_cast<Floats>(
-      _mm512_maskz_min_ps(0xffff, reinterpret_cast<__m512>(a), reinterpret_cast<__m512>(b)));
+  return _mm512_maskz_min_ps(0xffff, a, b);
 }
-PALPATE_LANES Floats most(Floats a, Floats b) noexcept {
-  return reinterpret_cast<Floats>(
-      _mm512_maskz_max_ps(0xffff, reinterpret_cast<__m512>(a), reinterpret_cast<__m512>(b)));
-}
+PALPATE_LANES Floats most(Floats a, Floats b) noexcept { return _mm512_maskz_max_ps(0xffff, a, b); }
 #elif PALPATE_VECTORS && defined(__AVX2__)
-PALPATE_LANES Floats least(Floats a, Floats b) noexcept {
-  return reinterpret_cast<Floats>(
-      _mm256_min_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b)));
-}
-PALPATE_LANES Floats most(Floats a, Floats b) noexcept {
-  return reinterpret_cast<Floats>(
-      _mm256_max_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b)));
-}
+PALPATE_LANES Floats least(Floats a, Floats b) noexcept { return _mm256_min_ps(a, b); }
+PALPATE_LANES Floats most(Floats a, Floats b) noexcept { return _mm256_max_ps(a, b); }
 #elif PALPATE_VECTORS && defined(__SSE2__)
-PALPATE_LANES Floats least(Floats a, Floats b) noexcept {
-  return reinterpret_cast<Floats>(
-      _mm_min_ps(reinterpret_cast<__m128>(a), reinterpret_cast<__m128>(b)));
-}
-PALPATE_LANES Floats most(Floats a, Floats b) noexcept {
-  return reinterpret_cast<Floats>(
-      _mm_max_ps(reinterpret_cast<__m128>(a), reinterpret_cast<__m128>(b)));
-}
+PALPATE_LANES Floats least(Floats a, Floats b) noexcept { return _mm_min_ps(a, b); }
+PALPATE_LANES Floats most(Floats a, Floats b) noexcept { return _mm_max_ps(a, b); }
 #else
 PALPATE_LANES Floats least(Floats a, Floats b) noexcept { return a < b ? a : b; }
 PALPATE_LANES Floats most(Floats a, Floats b) noexcept { return a > b ? a : b; }

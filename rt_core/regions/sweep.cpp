@@ -118,7 +118,7 @@ class Sweep {
   Pace& pace_;
   float limit_squared_;
   std::span<float> out_squared_;
-  BoxTest test_{};
+  BoxTest test_;
   std::uint32_t size_ = 0;
 };
 

@@ -230,7 +230,7 @@ TEST(RegionKernels, BoxBound_never_exceeds_the_distance_of_two_points_of_the_box
   int positive = 0;
   for (int round = 0; round < 1000; ++round) {
     const Boxes boxes = random_boxes(random);
-    BoxTest test{};
+    BoxTest test;
     const std::uint32_t near =
         best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, 0.25f, test);
     for (std::uint32_t i = 0; i < kBatch; ++i) {
@@ -252,7 +252,7 @@ TEST(RegionKernels, BoxBound_of_aligned_boxes_is_their_distance) {
     boxes.node.axes[0][i] = boxes.node.axes[4][i] = boxes.node.axes[8][i] = 1;
     for (auto& half : boxes.node.half) half[i] = 0.5f;
   }
-  BoxTest test{};
+  BoxTest test;
   best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, 1, test);
   EXPECT_EQ(test.squared[5], 2.0f * 2.0f + 1.0f);
   best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 9, 1, test);
@@ -267,8 +267,7 @@ TEST(RegionKernels, Boxes_are_placed_by_how_near_they_are) {
     Boxes boxes = random_boxes(random);
     boxes.node.children = 1 + static_cast<std::uint32_t>(round) % kBatch;
     const float below = round % 3 == 0 ? kFar : 0.25f;
-    BoxTest test{};
-    std::fill_n(test.passed, kBatch, kFar);
+    BoxTest test;
     const std::uint32_t near =
         best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, below, test);
     const Vec3d centre =
@@ -308,7 +307,7 @@ TEST(RegionKernels, BoxTest_keeps_the_least_of_what_was_passed_over) {
   Boxes boxes;
   boxes.map = in_float(Mat3d{}, Vec3d{3, 0, 0}, 1);
   boxes.node.children = kBatch;
-  BoxTest test{};
+  BoxTest test;
   std::fill_n(test.passed, kBatch, 7.0f);
   best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, 1, test);
   EXPECT_EQ(test.passed[3], 7.0f);
@@ -372,11 +371,11 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
       ASSERT_EQ(std::memcmp(found_first.on_a, found_other.on_a, sizeof found_first.on_a), 0);
       ASSERT_EQ(found_first.crossing, found_other.crossing);
     }
-    BoxTest expected{};
+    BoxTest expected;
     const std::uint32_t near =
         tables()[0]->test_boxes(boxes.one, boxes.map, boxes.node, 1.5f, 1, expected);
     for (const Kernels* table : tables()) {
-      BoxTest test{};
+      BoxTest test;
       ASSERT_EQ(near, table->test_boxes(boxes.one, boxes.map, boxes.node, 1.5f, 1, test));
       ASSERT_EQ(std::memcmp(&expected, &test, sizeof test), 0) << table->name;
     }

@@ -34,8 +34,8 @@
 #include "tools/bench/scenes.hpp"
 #if defined(PALPATE_BENCH_FCL)
 #include "tools/bench/mesh_fcl.hpp"
-#include "tools/palpate/clocks.hpp"
 #endif
+#include "tools/palpate/clocks.hpp"
 
 namespace palpate::bench {
 namespace {
