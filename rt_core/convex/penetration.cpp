@@ -187,12 +187,13 @@ Best expand_apart(const HullPair& pair, Polytope& polytope, const Best& best) no
     }
     face.passed_over = true;
     if (dot(face.normal, best.outward) > kApart) continue;
-    const double way = sqrt_of(squared_way(polytope.vertices[face.vertices[0]],
-                                           polytope.vertices[face.vertices[1]],
-                                           polytope.vertices[face.vertices[2]]));
+    const DifferencePoint corners[3] = {polytope.vertices[face.vertices[0]],
+                                        polytope.vertices[face.vertices[1]],
+                                        polytope.vertices[face.vertices[2]]};
+    const double way = sqrt_of(squared_way(corners[0], corners[1], corners[2]));
     if (way >= nearest) continue;
-    nearest = other.extent = way;
-    other.outward = face.normal;
+    nearest = way;
+    keep(other, way, face.normal, corners);
   }
   return other;
 }
@@ -246,7 +247,10 @@ Penetration penetration(const Hull& a, const Hull& b, const RelativePose& b_in_a
     bool settled = false;
     lower = expand(pair, scratch.polytope, best, settled) - rounding(pair);
     if (settled) keep_deepest(pair, scratch.polytope, best);
-    if (settled && ways == Ways::two) other = expand_apart(pair, scratch.polytope, best);
+    if (settled && ways == Ways::two) {
+      other = expand_apart(pair, scratch.polytope, best);
+      keep_deepest(pair, scratch.polytope, other);
+    }
   } else {
     measure_flat(pair, s, best);
     keep_deepest(pair, cache, best);
@@ -261,6 +265,7 @@ Penetration penetration(const Hull& a, const Hull& b, const RelativePose& b_in_a
     out.other_normal = -other.outward;
     const double longer = (other.extent - out.depth) / ((kOtherUpTo - 1) * out.depth);
     out.other_share = longer > 0 ? 0.5 * (1 - longer) : 0.5;  // in tiny overlaps rounding counts
+    out.other_point_a = witness_a(pair, other);
   }
   out.exact = out.depth - out.lower_bound <= kDistanceAccept * extent(pair);
   return out;

@@ -30,6 +30,7 @@ struct Penetration {
   /// face.
   Vec3d other_normal{};
   double other_share = 0;  ///< 0 to 0.5
+  Vec3d other_point_a{};   ///< deepest point of a along other_normal; where that counts
 };
 
 /// Working memory of one query at a time, about 26 KB; needs no initialisation.
@@ -51,8 +52,8 @@ struct PenetrationScratch {
 /// finite depth and a unit normal; where the cap is met the answer is the best separating
 /// translation seen, exact = false. Where a - b is flat to kTouching (coplanar flat hulls) the
 /// depth is at most that and the normal theirs; where it is straight, the normal is one across it.
-/// The depth is continuous as the hulls move. The normal leaps where another way out becomes the
-/// shortest; mixed by other_share the two directions do not.
+/// The depth is continuous as the hulls move. The normal and the points leap where another way out
+/// becomes the shortest; mixed by other_share the two directions do not, nor do the points of a.
 /// Cost: at most kMaxPolytopeVertices + 12 support pairs, O(kMaxPolytopeFaces) each, and as many as
 /// kMostOther more for the other way. Real-time safe.
 [[nodiscard]] Penetration penetration(const Hull& a, const Hull& b, const RelativePose& b_in_a,

@@ -11,6 +11,12 @@ Vec3d limited(Vec3d v, double most) noexcept {
   return length > most ? (most / length) * v : v;
 }
 
+/// What forces leave of each other that add up to `all`: nothing, where that is rounding.
+Vec3d unless_cancelled(Vec3d sum, double all) noexcept {
+  constexpr double kRounding = 1e-12;
+  return norm(sum) <= kRounding * all ? Vec3d{} : sum;
+}
+
 /// The contacts that push the tool, in the order of contacts.
 std::span<Felt> gather(std::span<Contact> contacts, std::span<const BodyPair> pairs,
                        std::uint32_t tool, Vec3d origin_m, double delta_m,
@@ -64,6 +70,8 @@ Penalty penalty(std::span<Contact> contacts, std::span<const BodyPair> pairs, st
   Depths depths(felt, workspace.ranking, *workspace.sides);
 
   Penalty out;
+  double all_N = 0;
+  double farthest2 = 0;
   out.places_full = workspace.copies.full() || workspace.places.full();
   for (const Felt& f : felt) {
     if (!(f.mass > 0)) continue;
@@ -75,12 +83,17 @@ Penalty penalty(std::span<Contact> contacts, std::span<const BodyPair> pairs, st
     Contact& contact = contacts[f.contact];
     contact.weight = contact.share * depth_m / f.depth_m;
     const Vec3d arm_m = contact.centre_m - tool_pose.position_m;
+    all_N += settings.stiffness_N_per_m * depth_m;
+    const double arm2 = squared_norm(arm_m);
+    farthest2 = arm2 > farthest2 ? arm2 : farthest2;
     out.directions += share;
     out.wrench.force_N += force_N;
     out.wrench.torque_Nm += cross(arm_m, force_N);
     out.stiffness.add_square(vec6(f.direction, cross(arm_m, f.direction)),
                              settings.stiffness_N_per_m * share);
   }
+  out.wrench.force_N = unless_cancelled(out.wrench.force_N, all_N);
+  out.wrench.torque_Nm = unless_cancelled(out.wrench.torque_Nm, all_N * sqrt_of(farthest2));
   return out;
 }
 

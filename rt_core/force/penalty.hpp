@@ -51,7 +51,8 @@ struct Penalty {
 ///   force follows the field of least distance, level by level;
 /// - the stiffness of the display does not grow with the number of contacts: all normals around
 ///   count as the six faces of a box, 2 k along any line;
-/// - opposed normals have no kinship: each side keeps its force, and what cancels is their sum;
+/// - opposed normals have no kinship: each side keeps its force, and what cancels is their sum; to
+///   less than 1e-12 of all forces it cancels wholly, for that is rounding;
 /// - a peg that rests on both ends is pushed k d in all, at the mean of the ends weighted by d^2:
 ///   turned by a small angle, it gets back the torque of two springs of k, one at each end;
 /// - a contact that comes within delta brings nothing at first, and everything is continuous in

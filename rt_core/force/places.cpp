@@ -9,6 +9,9 @@ constexpr int kMostProbes = 64;  // beyond that a corner finds no room; half ful
 /// Of a table, for each corner that may come into use.
 constexpr std::size_t kRoom = 2;
 
+/// Less than this is rounding, and not worth the room: which corner it goes to is chance.
+constexpr double kLeastShare = 1e-9;
+
 /// Corners farther out than this have no number; the masses of contacts there are kept.
 constexpr double kFarthest = 1 << 30;
 
@@ -75,7 +78,7 @@ Spot Places::add(Vec3d point_m, double mass, double part) noexcept {
   spot.share = {1 - farthest, farthest - between, between - nearest, nearest};
   for (std::size_t i = 0; i < Spot::kCorners; ++i) {
     const double share = spot.share[i];
-    if (share == 0) continue;
+    if (share < kLeastShare) continue;
     spot.place[i] =
         find(x + static_cast<std::int32_t>(x_after < i), y + static_cast<std::int32_t>(y_after < i),
              z + static_cast<std::int32_t>(z_after < i));

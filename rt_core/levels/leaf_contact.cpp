@@ -262,8 +262,8 @@ LeafContact overlapping(const PairState& pair, const Piece& a, const Piece& b,
   contact.found = true;
   contact.distance = contact.lower_bound = contact.upper_bound = -p.depth;
   contact.normal = way_out(pair, a, b, p);
-  contact.point_a = p.point_a;
-  contact.point_b = p.point_a + p.depth * contact.normal;
+  contact.point_a = (1 - p.other_share) * p.point_a + p.other_share * p.other_point_a;
+  contact.point_b = contact.point_a + p.depth * contact.normal;
   contact.capped = !p.exact;
   return contact;
 }

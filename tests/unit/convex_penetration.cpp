@@ -153,6 +153,26 @@ TEST(Penetration, next_best_way_counts_by_how_much_longer_it_is) {
 }
 
 // From other tetrahedra the polytope grows otherwise.
+// A plate pushed through the middle of another: where it leaves by the other side from then on.
+TEST(Penetration, points_mixed_by_the_share_do_not_leap_where_another_way_becomes_the_shortest) {
+  const Shape a = box({0.5, 0.4, 0.02});
+  const Shape b = box({0.3, 0.3, 0.01});
+  const auto scratch = std::make_unique<PenetrationScratch>();
+  for (const double z : {-1e-6, -1e-12, 0.0, 1e-12, 1e-6}) {
+    RelativePose pose;
+    pose.translation = {0.02, 0.01, z};
+    Cache cache;
+    static_cast<void>(distance(a.hull(), b.hull(), pose, kExact, cache));
+    const Penetration p = penetration(a.hull(), b.hull(), pose, cache, *scratch, Ways::two);
+    EXPECT_NEAR(p.depth, 0.03, 1e-5);
+    EXPECT_NEAR(p.other_share, 0.5, 1e-4);
+    EXPECT_NEAR(p.point_a.z, -0.02 * p.normal.z, 1e-9);
+    EXPECT_NEAR(p.other_point_a.z, -0.02 * p.other_normal.z, 1e-9);
+    const Vec3d mixed = (1 - p.other_share) * p.point_a + p.other_share * p.other_point_a;
+    EXPECT_NEAR(mixed.z, 0, 1e-5);
+  }
+}
+
 TEST(Penetration, ways_do_not_depend_on_where_the_search_starts) {
   Random random(12);
   const auto scratch = std::make_unique<PenetrationScratch>();

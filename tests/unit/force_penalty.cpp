@@ -280,6 +280,24 @@ TEST(Penalty, opposed_normals_keep_their_forces) {
               500 * (0.0006 - 0.0009), 1e-9);
 }
 
+TEST(Penalty, what_cancels_but_for_rounding_cancels) {
+  Random random{std::mt19937(14)};
+  std::vector<Contact> around;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d place = random.vector(0.05);
+    const Vec3d normal = random.direction();
+    const double distance_m = random(-0.0005, 0.001);
+    around.push_back(at(place, normal, distance_m));
+    around.push_back(at(-place, -normal, distance_m));
+  }
+  const Penalty p = feel(around);
+  EXPECT_EQ(p.wrench.force_N, Vec3d{});
+  around[7].distance_m -= 1e-12;  // a thousandth of a nanometre is not rounding
+  const double left_N = norm(feel(around).wrench.force_N);
+  EXPECT_GT(left_N, 0);
+  EXPECT_LT(left_N, 1e-6);
+}
+
 TEST(Penalty, perpendicular_walls_do_not_feel_each_other) {
   const Penalty p = feel({at({0, 0, 0}, {1, 0, 0}, 0.0004), at({0, 0, 0}, {0, 1, 0}, 0.0001),
                           at({0, 0, 0}, {0, 0, 1}, -0.0002)});
@@ -382,6 +400,30 @@ TEST(Penalty, full_table_of_places_keeps_the_force) {
   EXPECT_TRUE(p.places_full);
   EXPECT_FALSE(feel(c).places_full);
   EXPECT_NEAR(p.wrench.force_N.z, 500 * 0.0005, 1e-12);
+}
+
+// Contacts on the planes of the grid: a corner that rounding adds, with a share of 1e-16, must not
+// take the room of another.
+TEST(Penalty, rounding_does_not_choose_what_finds_room_in_a_full_table) {
+  Random random{std::mt19937(13)};
+  std::vector<Contact> c;
+  for (int i = 0; i < 2000; ++i) {
+    const int x = i % 10, y = i / 10 % 10, z = i / 100;
+    const Vec3d place = 0.5 * kSettings.cluster_radius_m * Vec3d{1.0 * x, 1.0 * y, 1.0 * z};
+    const Vec3d normal = random.direction();
+    c.push_back(at(place, normal, random(-0.0005, 0.001)));
+  }
+  std::vector<Contact> rounded = c;
+  for (Contact& r : rounded) {
+    const Vec3d off = random.vector(1e-16);
+    r.point_a_m += off;
+    r.point_b_m += off;
+  }
+  const Penalty p = feel(c, kSettings, {}, 500);
+  const Penalty q = feel(rounded, kSettings, {}, 500);
+  EXPECT_TRUE(p.places_full);
+  EXPECT_GT(norm(p.wrench.force_N), 0.01);
+  EXPECT_NEAR(norm(q.wrench.force_N - p.wrench.force_N), 0, 1e-9);
 }
 
 TEST(Penalty, scales_from_micrometres_to_kilometres) {
