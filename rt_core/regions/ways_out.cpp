@@ -25,12 +25,29 @@ struct ByPieces {
   }
 };
 
-/// Of a way, how much is felt beside the shortest.
-double felt_of(const WayOut& way, const WayOut& shortest,
+/// The shortest ways of two pieces, in order.
+struct Shortest {
+  static constexpr std::uint32_t kMost = 16;  ///< others are left out
+  WayOut ways[kMost];
+  std::uint32_t count = 0;
+
+  void add(const WayOut& way) noexcept {
+    if (count < kMost) ways[count++] = way;
+  }
+};
+
+/// Of a way, how much is felt beside those that are shorter.
+double felt_of(const WayOut& way, const Shortest& shorter,
                std::span<const Contact> contacts) noexcept {
-  const double cosine = dot(contacts[way.contact].normal, contacts[shortest.contact].normal);
-  const double ratio = shortest.length / way.length;
-  return ratio > cosine ? ratio : cosine;
+  const double shortest = shorter.ways[0].length;
+  double felt = shortest / way.length;
+  for (std::uint32_t i = 0; i < shorter.count; ++i) {
+    const WayOut& other = shorter.ways[i];
+    const double cosine = dot(contacts[way.contact].normal, contacts[other.contact].normal);
+    const double by_other = shortest / other.length * cosine;
+    felt = by_other > felt ? by_other : felt;
+  }
+  return felt;
 }
 
 }  // namespace
@@ -40,11 +57,12 @@ void share_by_ways_out(std::span<WayOut> ways, std::span<Contact> contacts) noex
   const ByPieces by_pieces{contacts};
   MinQueue<WayOut, ByPieces> queue(ways, by_pieces);
   queue.fill();
-  WayOut shortest = queue.top();
+  Shortest shorter;
   for (; !queue.empty(); queue.pop()) {
     const WayOut next = queue.top();
-    if (!by_pieces.same(next, shortest)) shortest = next;
-    contacts[next.contact].share -= next.part * (1 - felt_of(next, shortest, contacts));
+    if (shorter.count > 0 && !by_pieces.same(next, shorter.ways[0])) shorter.count = 0;
+    shorter.add(next);
+    contacts[next.contact].share -= next.part * (1 - felt_of(next, shorter, contacts));
   }
 }
 

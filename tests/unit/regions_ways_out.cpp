@@ -35,6 +35,24 @@ TEST(RegionsWaysOut, ways_that_lead_nearly_as_the_shortest_are_felt_by_the_cosin
   EXPECT_DOUBLE_EQ(contacts[2].share, 0.1);
 }
 
+// Which of two is the shortest may be a matter of rounding.
+TEST(RegionsWaysOut, of_ways_as_short_as_each_other_the_one_that_leads_the_same_way_counts) {
+  for (const double longer : {1 - 1e-15, 1 + 1e-15}) {
+    std::vector<Contact> contacts(4);
+    contacts[0].normal = {0, 0, 1};
+    contacts[1].normal = {0, 1, 0};
+    contacts[2].normal = {0, 0.6, 0.8};
+    contacts[3].normal = {0.6, 0.8, 0};
+    std::vector<WayOut> ways{
+        {1, 1, 0, 1, 2}, {longer, 1, 1, 1, 2}, {10, 1, 2, 1, 2}, {10, 1, 3, 1, 2}};
+    share_by_ways_out(ways, contacts);
+    EXPECT_NEAR(contacts[0].share, 1, 1e-14);
+    EXPECT_NEAR(contacts[1].share, 1, 1e-14);
+    EXPECT_NEAR(contacts[2].share, 0.8, 1e-14);
+    EXPECT_NEAR(contacts[3].share, 0.8, 1e-14);
+  }
+}
+
 TEST(RegionsWaysOut, pieces_of_other_bodies_are_others) {
   EXPECT_EQ(shares({{4, 1, 0, 1, 2}, {1, 1, 1, 1, 2}}, {0, 1}), (std::vector<double>{1, 1}));
 }
