@@ -195,6 +195,7 @@ Best expand_apart(const HullPair& pair, Polytope& polytope, const Best& best) no
     nearest = way;
     keep(other, way, face.normal, corners);
   }
+  if (other.extent <= nearest) keep_deepest(pair, polytope, other);
   return other;
 }
 
@@ -247,10 +248,7 @@ Penetration penetration(const Hull& a, const Hull& b, const RelativePose& b_in_a
     bool settled = false;
     lower = expand(pair, scratch.polytope, best, settled) - rounding(pair);
     if (settled) keep_deepest(pair, scratch.polytope, best);
-    if (settled && ways == Ways::two) {
-      other = expand_apart(pair, scratch.polytope, best);
-      keep_deepest(pair, scratch.polytope, other);
-    }
+    if (settled && ways == Ways::two) other = expand_apart(pair, scratch.polytope, best);
   } else {
     measure_flat(pair, s, best);
     keep_deepest(pair, cache, best);
