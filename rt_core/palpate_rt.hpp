@@ -123,9 +123,10 @@ struct Budget {
 /// A pair of closest points of two pieces nearer than delta. World axes.
 ///
 /// Where the pieces overlap, point_b_m - point_a_m leads out along the normal, about as far as
-/// the overlap is deep. The levels engine gives points of the pieces' hulls; the regions engine
-/// gives points about the middle of the curve in which the surfaces cross (regions/crossing.hpp),
-/// which need not lie on either.
+/// the overlap is deep. The levels engine gives points of the pieces' hulls or, where a second way
+/// out counts, points between those of the two ways, inside them; the regions engine gives points
+/// about the middle of the curve in which the surfaces cross (regions/crossing.hpp). Neither need
+/// lie on a surface.
 struct Contact {
   Vec3d point_a_m{};  ///< on the surface of body a
   Vec3d point_b_m{};  ///< on the surface of body b

@@ -30,7 +30,7 @@ struct Penetration {
   /// face.
   Vec3d other_normal{};
   double other_share = 0;  ///< 0 to 0.5
-  Vec3d other_point_a{};   ///< deepest point of a along other_normal; where that counts
+  Vec3d other_point_a{};   ///< as point_a, that way; the origin where other_share is 0
 };
 
 /// Working memory of one query at a time, about 26 KB; needs no initialisation.

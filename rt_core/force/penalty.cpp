@@ -79,11 +79,12 @@ Penalty penalty(std::span<Contact> contacts, std::span<const BodyPair> pairs, st
     // At least its own; rounding of masses far larger may say less.
     const double share = around > f.mass ? f.mass / around : 1;
     const double depth_m = share * depths.around(f);
-    const Vec3d force_N = (settings.stiffness_N_per_m * depth_m) * f.direction;
+    const double size_N = settings.stiffness_N_per_m * depth_m;
+    const Vec3d force_N = size_N * f.direction;
     Contact& contact = contacts[f.contact];
     contact.weight = contact.share * depth_m / f.depth_m;
     const Vec3d arm_m = contact.centre_m - tool_pose.position_m;
-    all_N += settings.stiffness_N_per_m * depth_m;
+    all_N += size_N;
     const double arm2 = squared_norm(arm_m);
     farthest2 = arm2 > farthest2 ? arm2 : farthest2;
     out.directions += share;

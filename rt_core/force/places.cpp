@@ -9,7 +9,7 @@ constexpr int kMostProbes = 64;  // beyond that a corner finds no room; half ful
 /// Of a table, for each corner that may come into use.
 constexpr std::size_t kRoom = 2;
 
-/// Less than this is rounding, and not worth the room: which corner it goes to is chance.
+/// Less than this may be rounding, and then which corner it goes to is chance.
 constexpr double kLeastShare = 1e-9;
 
 /// Corners farther out than this have no number; the masses of contacts there are kept.

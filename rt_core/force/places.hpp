@@ -35,7 +35,8 @@ struct Spot {
 /// corner counts as much as the largest mass brought, and hands that out in proportion. So a
 /// contact alone keeps its mass wherever it lies, coincident ones have that of one together, a wide
 /// contact gets a mass that grows with its area and not with its triangles, and everything is
-/// continuous in the points and masses and independent of their order but for rounding.
+/// continuous in the points and masses and independent of their order but for rounding: of the
+/// shares themselves too, for those below 1e-9 are kept and take no room.
 class Places {
  public:
   Places() = default;

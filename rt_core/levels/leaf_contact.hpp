@@ -42,8 +42,10 @@ inline constexpr double kOnSurface = 1e-6;
 /// the triangles of the patch are queried one by one instead of the hull. Overlapping hulls:
 /// penetration depth (Appendix B, step 2b), and its direction where the patches face that way
 /// (Piece::patch_normal); else, more and more, the way they face. Departure from the paper, whose
-/// pieces are pushed out the shortest way: of a thin piece that is often through its back. Nor is a
-/// contact felt of pieces that meet back to back: they have passed through each other.
+/// pieces are pushed out the shortest way: of a thin piece that is often through its back. Where
+/// another way out is nearly as short, directions and points of the two are mixed
+/// (Penetration::other_share). Nor is a contact felt of pieces that meet back to back: they have
+/// passed through each other.
 /// @param query         the result for the hulls of a and b
 /// @param reach         only contacts nearer than this are wanted
 /// @param most_queries  to spend on triangles; beyond that the contact may not be the nearest

@@ -152,7 +152,6 @@ TEST(Penetration, next_best_way_counts_by_how_much_longer_it_is) {
   }
 }
 
-// From other tetrahedra the polytope grows otherwise.
 // A plate pushed through the middle of another: where it leaves by the other side from then on.
 TEST(Penetration, points_mixed_by_the_share_do_not_leap_where_another_way_becomes_the_shortest) {
   const Shape a = box({0.5, 0.4, 0.02});
@@ -173,6 +172,7 @@ TEST(Penetration, points_mixed_by_the_share_do_not_leap_where_another_way_become
   }
 }
 
+// From other tetrahedra the polytope grows otherwise.
 TEST(Penetration, ways_do_not_depend_on_where_the_search_starts) {
   Random random(12);
   const auto scratch = std::make_unique<PenetrationScratch>();
