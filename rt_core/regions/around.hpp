@@ -20,6 +20,18 @@ struct Sector {
   Vec3d to{};
 };
 
+/// The angle that a sector takes up, to 1e-4 (Abramowitz and Stegun 1964, 4.4.45: the arc cosine by
+/// a square root).
+[[nodiscard]] inline double angle_of(const Sector& s) noexcept {
+  constexpr double kHalfTurn = 3.14159265358979323846;
+  const double size = sqrt_of(squared_norm(s.from) * squared_norm(s.to));
+  const double cosine = size > 0 ? dot(s.from, s.to) / size : 1;
+  const double c = cosine < 0 ? -cosine : cosine;
+  const double series = 1.5707288 + c * (-0.2121144 + c * (0.0742610 - 0.0187293 * c));
+  const double angle = sqrt_of(c < 1 ? 1 - c : 0) * series;
+  return cosine < 0 ? kHalfTurn - angle : angle;
+}
+
 /// On which corner or edge of its triangle a point lies.
 struct Feature {
   enum class Kind : std::uint8_t { face, edge, corner } kind = Kind::face;
@@ -37,12 +49,17 @@ struct Feature {
     longest2 = length2 > longest2 ? length2 : longest2;
   }
   const double near2 = kOnEdge * kOnEdge * longest2;
+  double least2 = near2;
   Feature found;
   for (std::uint32_t i = 0; i < 3; ++i) {
     const Vec3d edge = corners[(i + 1) % 3] - corners[i];
     const Vec3d offset = point - corners[i];
     if (squared_norm(offset) <= near2) return {Feature::Kind::corner, i};
-    if (squared_norm(cross(edge, offset)) <= near2 * squared_norm(edge)) {
+    // Between the long edges of a needle both are near.
+    const double length2 = squared_norm(edge);
+    const double off2 = length2 > 0 ? squared_norm(cross(edge, offset)) / length2 : 0;
+    if (off2 <= least2) {
+      least2 = off2;
       found = {Feature::Kind::edge, i};
     }
   }

@@ -109,13 +109,13 @@ class Report {
   }
 
   /// The region is nearest to the inner side of b's surface: it has passed through, beside others
-  /// of its body that cross the surface or not. At an edge or a corner one face may mislead; of
-  /// those there, the one met most squarely tells. Not told where the interval is so open that the
-  /// nearest may be a face before this one, on a wall thinner than the interval; nor from a surface
-  /// that is open to its back.
+  /// of its body that cross the surface or not. At an edge or a corner one face may mislead; the
+  /// mean of their normals, weighted by the angles that they take up there, does not (Baerentzen
+  /// and Aanaes 2005). Not told where the interval is so open that the nearest may be a face before
+  /// this one, on a wall thinner than the interval; nor from a surface that is open to its back.
   bool is_behind(const Active& item, Vec3d on_b, Vec3d normal) noexcept {
-    constexpr double kSquare = 0.5;  // where none is met so squarely, blades meet
-    constexpr double kMoreSquare = 1e-3;
+    constexpr double kSquare = 0.5;    // where none is met so squarely, blades meet
+    constexpr double kLeast = 1e-3;    // of the mean: less is rounding, on a blade's edge
     constexpr double kMostOpen = 0.1;  // of delta
     const PairState& pair = pair_of(item);
     if (static_cast<double>(item.width) > kMostOpen * pair.delta) return false;
@@ -123,14 +123,17 @@ class Report {
     const std::uint32_t face = state_of(item).witness.b;
     double least = dot(normal, facing(pair, face));
     if (least > kSquare) return false;
-    double most = least;
-    visit_around(b, face, in_image_of_b(pair, on_b), [&](const Sector& sector) {
+    const Feature at = feature_at(b.region_triangles[face], in_image_of_b(pair, on_b));
+    double angles = angle_of(sector_at(b, face, at));
+    double mean = angles * least;
+    visit_around(b, face, at, [&](const Sector& sector) {
       const double beside = dot(normal, facing(pair, sector.triangle));
+      const double angle = angle_of(sector);
       least = beside < least ? beside : least;
-      most = beside > most ? beside : most;
+      angles += angle;
+      mean += angle * beside;
     });
-    return least < -kSquare && most + kMoreSquare < -least &&
-           is_closed(b, b.region_triangles[face]);
+    return least < -kSquare && mean < -kLeast * angles && is_closed(b, b.region_triangles[face]);
   }
 
   static Vec3d in_image_of_b(const PairState& pair, Vec3d point) noexcept {

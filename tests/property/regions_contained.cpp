@@ -2,10 +2,12 @@
 // One body wholly inside another: no triangles cross, and yet they overlap.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "rt_core/regions/containment.hpp"
 #include "tests/support/baked_scene.hpp"
+#include "tests/support/placements.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace palpate::test {
@@ -126,6 +128,43 @@ TEST(RegionsContained, side_of_a_point_is_that_of_the_shape) {
     inside += side == regions::Side::inside;
   }
   EXPECT_GT(inside, 30);
+}
+
+/// A tetrahedron with a corner in the origin; of its normals there one may look nearly the opposite
+/// way of what is outside.
+bake::Mesh corner_of(const Vec3d (&edges)[3]) {
+  bake::Mesh m;
+  m.points.push_back({0, 0, 0});
+  for (const Vec3d& e : edges) m.points.push_back({e.x, e.y, e.z});
+  m.faces = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}};
+  return dot(cross(edges[0], edges[1]), edges[2]) > 0 ? m : inside_out(m);
+}
+
+TEST(RegionsContained, what_is_before_a_sharp_corner_is_outside) {
+  constexpr double kGap = 0.3 * kDelta;
+  const BakedBody tool(ball(4, 6, 0.1), kRegions);
+  std::mt19937 rng(7);
+  std::uniform_real_distribution<double> thin(0.05, 1);
+  for (int body = 0; body < 60; ++body) {
+    const Vec3d axis = random_unit(rng);
+    Vec3d edges[3];
+    for (Vec3d& e : edges) {
+      e = axis + thin(rng) * random_unit(rng);
+      e = (1 / norm(e)) * e;
+    }
+    if (std::abs(dot(cross(edges[0], edges[1]), edges[2])) < 1e-3) continue;
+    const BakedBody needle(corner_of(edges), kRegions);
+    BakedScene scene({tool.view, needle.view}, {{0, 1}}, settings());
+    for (int i = 0; i < 40; ++i) {
+      const Vec3d out = random_unit(rng);
+      if (dot(out, edges[0]) > 0 || dot(out, edges[1]) > 0 || dot(out, edges[2]) > 0) continue;
+      const Pose poses[2] = {approach(tool.mesh, needle.mesh, kGap, 1, out, {}), {}};
+      const TickResult r = tick_or_fail(*scene.engine, poses);
+      ASSERT_FALSE(r.contacts.empty()) << body << ' ' << i;
+      EXPECT_NEAR(r.min_distance_m, kGap, 0.01 * kGap) << body << ' ' << i;
+      for (const Contact& c : r.contacts) EXPECT_GT(c.distance_m, 0) << body << ' ' << i;
+    }
+  }
 }
 
 }  // namespace
