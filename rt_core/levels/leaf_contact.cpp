@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "rt_core/geometry/smooth_step.hpp"
+#include "rt_core/levels/facing.hpp"
 #include "rt_core/levels/rules.hpp"
 
 namespace palpate::levels {
@@ -18,35 +19,6 @@ constexpr double kLeastDirection = 1e-3;
 /// Original pieces are felt whole up to a right angle beyond their normals, and not at all where
 /// the cosine is less by one over this and more.
 constexpr double kBehind = 2;
-
-Vec3d position(const image::Vertex& v) noexcept {
-  return {static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),
-          static_cast<double>(v.position[2])};
-}
-
-double squared_distance_to_segment(Vec3d p, Vec3d from, Vec3d to) noexcept {
-  const Vec3d along = to - from;
-  const double length2 = squared_norm(along);
-  double t = length2 > 0 ? dot(p - from, along) / length2 : 0;
-  t = t < 0 ? 0 : (t > 1 ? 1 : t);
-  return squared_norm(p - from - t * along);
-}
-
-bool on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) noexcept {
-  constexpr double kNear2 = kOnSurface * kOnSurface;
-  const Vec3d normal = cross(b - a, c - a);
-  const double area2 = squared_norm(normal);
-  const double height = dot(p - a, normal);
-  if (height * height > kNear2 * area2) return false;
-  if (area2 > 0 && dot(cross(b - a, p - a), normal) >= 0 && dot(cross(c - b, p - b), normal) >= 0 &&
-      dot(cross(a - c, p - c), normal) >= 0) {
-    return true;
-  }
-  return squared_distance_to_segment(p, a, b) <= kNear2 ||
-         squared_distance_to_segment(p, b, c) <= kNear2 ||
-         squared_distance_to_segment(p, c, a) <= kNear2;
-}
-
 /// Is every one of the hull vertices a corner of the triangle?
 bool holds(const Triangle& t, const std::uint32_t (&vertices)[3], std::uint32_t count) noexcept {
   for (std::uint32_t k = 0; k < count; ++k) {
@@ -66,15 +38,7 @@ bool on_patch(const ImageView& image, const Piece& piece, Vec3d point, const std
     if (holds(triangles[i], of, count)) return true;
   }
   // Faces of the hull may be cut into other triangles than the patch is.
-  const image::Vertex* vertices = image.vertices.data() + piece.first_vertex;
-  for (std::uint32_t i = 0; i < piece.triangles; ++i) {
-    const Triangle& t = triangles[i];
-    if (on_triangle(point, position(vertices[t.vertices[0]]), position(vertices[t.vertices[1]]),
-                    position(vertices[t.vertices[2]]))) {
-      return true;
-    }
-  }
-  return false;
+  return levels::on_patch(image, piece, point);
 }
 
 /// One piece as a run of convex parts: its hull, or the triangles of its patch.
@@ -101,10 +65,6 @@ convex::Hull part(const Parts& parts, std::uint32_t i, image::Vertex (&storage)[
   hull.count = 3;
   hull.scale = parts.scale;
   return hull;
-}
-
-Vec3d to_b(const PairState& pair, Vec3d point) noexcept {
-  return transpose(pair.b_in_a.rotation) * (point - pair.b_in_a.translation);
 }
 
 bool witness_a_real(const PairState& pair, const Piece& a, const convex::Distance& d) noexcept {
@@ -144,7 +104,7 @@ Extents extents_of(const Parts& parts, Vec3d direction, double offset) noexcept 
     double least = std::numeric_limits<double>::infinity();
     double most = -least;
     for (std::uint32_t k = 0; k < hull.count; ++k) {
-      const double along = offset + dot(direction, hull.scale * position(hull.vertices[k]));
+      const double along = offset + dot(direction, hull.scale * vertex_of(hull.vertices[k]));
       least = along < least ? along : least;
       most = along > most ? along : most;
     }
@@ -197,32 +157,15 @@ LeafContact nearest_parts(const PairState& pair, const Piece& a, const Piece& b,
   return best;
 }
 
-Vec3d patch_normal(const Piece& piece) noexcept {
-  return {static_cast<double>(piece.patch_normal[0]), static_cast<double>(piece.patch_normal[1]),
-          static_cast<double>(piece.patch_normal[2])};
-}
-
-/// How squarely a patch may be met along a direction that leads out of it: 1 and more within its
-/// cone of normals, less by as much as the cosine falls beyond. `normal` is the piece's, in the
-/// coordinates of `outward`.
-double squareness(const Piece& piece, Vec3d normal, Vec3d outward) noexcept {
-  const double length = norm(normal);
-  if (!(length > 0)) return 1;
-  return 1 + dot(outward, normal) / length - static_cast<double>(piece.patch_cosine);
-}
-
-/// Of two patches that meet along a direction from b to a, the less square.
-double squareness(const PairState& pair, const Piece& a, const Piece& b, Vec3d direction) noexcept {
-  const double of_a = squareness(a, patch_normal(a), -direction);
-  const double of_b = squareness(b, pair.b_in_a.rotation * patch_normal(b), direction);
-  return of_a < of_b ? of_a : of_b;
-}
-
 /// The hulls are parted soonest through the back of the thinner one where they overlap by more than
 /// half of it, and sideways where they hardly meet: no way out of the solid. The less the patches
-/// look like it, the more they are parted the way they face.
-Vec3d direction_of(const PairState& pair, const Piece& a, const Piece& b, Vec3d shortest) noexcept {
-  const double share = smooth_step(squareness(pair, a, b, shortest));
+/// look like it, the more they are parted the way they face. Where patches have only just met they
+/// go on being parted the way they met.
+Vec3d direction_of(const PairState& pair, const Piece& a, const Piece& b, const Way& way) noexcept {
+  const Vec3d shortest = way.normal;
+  const double square = smooth_step(squareness(pair, a, b, shortest));
+  const double as_met = square < 1 ? just_met(pair, a, b, way) : 0;
+  const double share = square > as_met ? square : as_met;
   const Vec3d facing = pair.b_in_a.rotation * patch_normal(b) - patch_normal(a);
   const Vec3d mixed = share * shortest + (1 - share) * facing;
   const double length = norm(mixed);
@@ -232,10 +175,11 @@ Vec3d direction_of(const PairState& pair, const Piece& a, const Piece& b, Vec3d 
 /// The way out of the solid, continuous where one of the hulls' takes the place of another.
 Vec3d way_out(const PairState& pair, const Piece& a, const Piece& b,
               const convex::Penetration& p) noexcept {
-  const Vec3d shortest = direction_of(pair, a, b, p.normal);
+  const Vec3d shortest = direction_of(pair, a, b, {p.normal, p.point_a, p.depth});
   if (!(p.other_share > 0)) return shortest;
   const Vec3d mixed =
-      (1 - p.other_share) * shortest + p.other_share * direction_of(pair, a, b, p.other_normal);
+      (1 - p.other_share) * shortest +
+      p.other_share * direction_of(pair, a, b, {p.other_normal, p.other_point_a, p.depth});
   const double length = norm(mixed);
   return length > kLeastDirection ? (1 / length) * mixed : shortest;
 }

@@ -28,10 +28,6 @@ struct LeafContact {
   bool hidden_b = false;
 };
 
-/// A point this near to a triangle of a patch lies on it. Baked vertices are rounded to 6e-8 and
-/// hulls are checked against the mesh to 1e-7.
-inline constexpr double kOnSurface = 1e-6;
-
 /// Turns the answer of a convex query of two leaf pieces into a contact.
 ///
 /// Disjoint hulls: the witnesses are a contact where both lie on the mesh. A witness on a virtual
@@ -41,11 +37,11 @@ inline constexpr double kOnSurface = 1e-6;
 /// may stop (hidden_a, hidden_b). Pieces of open or self-crossing components have no inside; there
 /// the triangles of the patch are queried one by one instead of the hull. Overlapping hulls:
 /// penetration depth (Appendix B, step 2b), and its direction where the patches face that way
-/// (Piece::patch_normal); else, more and more, the way they face. Departure from the paper, whose
-/// pieces are pushed out the shortest way: of a thin piece that is often through its back. Where
-/// another way out is nearly as short, directions and points of the two are mixed
-/// (Penetration::other_share). Nor is a contact felt of pieces that meet back to back: they have
-/// passed through each other.
+/// (Piece::patch_normal) or have only just met (facing.hpp), so that it does not leap at zero;
+/// else, more and more, the way they face. Departure from the paper, whose pieces are pushed out
+/// the shortest way: of a thin piece that is often through its back. Where another way out is
+/// nearly as short, directions and points of the two are mixed (Penetration::other_share). Nor is a
+/// contact felt of pieces that meet back to back: they have passed through each other.
 /// @param query         the result for the hulls of a and b
 /// @param reach         only contacts nearer than this are wanted
 /// @param most_queries  to spend on triangles; beyond that the contact may not be the nearest

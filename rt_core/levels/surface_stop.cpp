@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/surface_stop.hpp"
 
+#include "rt_core/levels/facing.hpp"
+
 namespace palpate::levels {
 namespace {
 

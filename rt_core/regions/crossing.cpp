@@ -5,12 +5,15 @@
 
 #include "rt_core/convex/minkowski.hpp"
 #include "rt_core/geometry/smooth_step.hpp"
+#include "rt_core/levels/facing.hpp"
 
 namespace palpate::regions {
 namespace {
 
 /// Normals that cancel to less than this share of the curve's length tell no direction.
 constexpr double kLeastDecided = 1e-3;
+/// Of delta: surfaces that cross in a shorter curve have only just begun to.
+constexpr double kShortCurve = 0.5;
 
 struct Hulls {
   convex::Hull a;
@@ -96,6 +99,27 @@ const Crossing& deepest_of(std::span<const CrossingOfPieces> pieces) noexcept {
   return deepest->overlap;
 }
 
+/// The way that pieces came which have only just met: their least way out, the deeper the more it
+/// counts. Unit, or shorter the less they have only just met and the less they agree.
+class WayBack {
+ public:
+  void add(const levels::PairState& pair, const Crossing& overlap) noexcept {
+    constexpr double kLeastDepth = 1e-9;  // of pieces that touch
+    const double as_met = levels::just_met(pair, pair.image_a->pieces[overlap.piece_a],
+                                           pair.image_b->pieces[overlap.piece_b],
+                                           {overlap.normal, overlap.point_a, overlap.depth});
+    const double depth = overlap.depth + kLeastDepth;
+    const double weight = depth * depth * depth;
+    sum_ += (weight * as_met) * overlap.normal;
+    weights_ += weight;
+  }
+  Vec3d way() const noexcept { return weights_ > 0 ? (1 / weights_) * sum_ : Vec3d{}; }
+
+ private:
+  Vec3d sum_{};
+  double weights_ = 0;
+};
+
 /// Who has a part in a depth, not by chance where several are as deep: the pieces that are deeper
 /// than nine tenths of it. For those, how long their way is.
 void take_part(const levels::PairState& pair, std::span<CrossingOfPieces> pieces, double depth,
@@ -119,6 +143,8 @@ Crossing overlap(const levels::PairState& pair, CrossingScratch& scratch) noexce
   const CrossingList& list = scratch.list;
   CrossingCurve all = list.rest;
   Vec3d way = all.along_a + all.along_b;
+  const double short_curve = kShortCurve * pair.delta;
+  WayBack way_back;
   const std::span<CrossingOfPieces> found{scratch.of_pieces, list.count};
   for (std::uint32_t i = 0; i < list.count; ++i) {
     const CrossingPieces& pieces = list.pieces[i];
@@ -128,7 +154,10 @@ Crossing overlap(const levels::PairState& pair, CrossingScratch& scratch) noexce
     way += found[i].way;
     all.length += pieces.curve.length;
     all.moment += pieces.curve.moment;
+    if (all.length < short_curve) way_back.add(pair, found[i].overlap);
   }
+  const Vec3d back = (1 - smooth_step(all.length / short_curve)) * way_back.way();
+  way = (1 - norm(back)) * way + norm(way) * back;
   const double decided = norm(way);
   if (decided <= kLeastDecided * all.length) return deepest_of(found);
   const Vec3d normal = (1 / decided) * way;

@@ -49,7 +49,9 @@ struct CrossingScratch {
 /// have been met from their backs. Else each pair of pieces is led out along the normals of a or of
 /// b along their part of the curve, nearly all along those by which the pieces part sooner, and the
 /// region in the mean direction: so a corner or a side in a face is pushed along the face's normal
-/// from the beginning on, as it was before it crossed, however large the triangles are.
+/// from the beginning on, as it was before it crossed, however large the triangles are. So is an
+/// edge that crosses an edge: where the surfaces have only just met (levels/facing.hpp) and the
+/// curve is short, the least way out of the pieces is the way they came, and counts.
 /// Cost: one penetration query and up to six support points a pair.
 Crossing overlap(const levels::PairState& pair, CrossingScratch& scratch) noexcept;
 

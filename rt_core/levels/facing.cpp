@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/levels/facing.hpp"
+
+#include "rt_core/geometry/smooth_step.hpp"
+
+namespace palpate::levels {
+namespace {
+
+using image::Piece;
+using image::Triangle;
+
+/// Of delta: patches that overlap by less have only just met.
+constexpr double kJustMet = 0.25;
+/// Squareness from which on they may have.
+constexpr double kSideways = 0.25;
+
+double squared_distance_to_segment(Vec3d p, Vec3d from, Vec3d to) noexcept {
+  const Vec3d along = to - from;
+  const double length2 = squared_norm(along);
+  double t = length2 > 0 ? dot(p - from, along) / length2 : 0;
+  t = t < 0 ? 0 : (t > 1 ? 1 : t);
+  return squared_norm(p - from - t * along);
+}
+
+bool on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) noexcept {
+  constexpr double kNear2 = kOnSurface * kOnSurface;
+  const Vec3d normal = cross(b - a, c - a);
+  const double area2 = squared_norm(normal);
+  const double height = dot(p - a, normal);
+  if (height * height > kNear2 * area2) return false;
+  if (area2 > 0 && dot(cross(b - a, p - a), normal) >= 0 && dot(cross(c - b, p - b), normal) >= 0 &&
+      dot(cross(a - c, p - c), normal) >= 0) {
+    return true;
+  }
+  return squared_distance_to_segment(p, a, b) <= kNear2 ||
+         squared_distance_to_segment(p, b, c) <= kNear2 ||
+         squared_distance_to_segment(p, c, a) <= kNear2;
+}
+
+/// How squarely a patch may be met along a direction that leads out of it: 1 and more within its
+/// cone of normals, less by as much as the cosine falls beyond. `normal` is the piece's, in the
+/// coordinates of `outward`.
+double squareness(const Piece& piece, Vec3d normal, Vec3d outward) noexcept {
+  const double length = norm(normal);
+  if (!(length > 0)) return 1;
+  return 1 + dot(outward, normal) / length - static_cast<double>(piece.patch_cosine);
+}
+
+}  // namespace
+
+bool on_patch(const ImageView& image, const Piece& piece, Vec3d point) noexcept {
+  const Triangle* triangles = image.triangles.data() + piece.first_triangle;
+  const image::Vertex* vertices = image.vertices.data() + piece.first_vertex;
+  for (std::uint32_t i = 0; i < piece.triangles; ++i) {
+    const Triangle& t = triangles[i];
+    if (on_triangle(point, vertex_of(vertices[t.vertices[0]]), vertex_of(vertices[t.vertices[1]]),
+                    vertex_of(vertices[t.vertices[2]]))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+double squareness(const PairState& pair, const Piece& a, const Piece& b, Vec3d direction) noexcept {
+  const double of_a = squareness(a, patch_normal(a), -direction);
+  const double of_b = squareness(b, pair.b_in_a.rotation * patch_normal(b), direction);
+  return of_a < of_b ? of_a : of_b;
+}
+
+double just_met(const PairState& pair, const Piece& a, const Piece& b, const Way& way) noexcept {
+  const double deep = way.depth / (kJustMet * pair.delta);
+  const double square = squareness(pair, a, b, way.normal);
+  if (!(deep < 1) || !(square > 0)) return 0;
+  const Vec3d point_b = way.point_a + way.depth * way.normal;
+  if (!on_patch(*pair.image_a, a, (1.0 / pair.scale_a) * way.point_a) ||
+      !on_patch(*pair.image_b, b, (1.0 / pair.scale_b) * to_b(pair, point_b))) {
+    return 0;
+  }
+  return (1 - smooth_step(deep)) * smooth_step(square / kSideways);
+}
+
+}  // namespace palpate::levels

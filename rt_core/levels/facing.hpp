@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which way the patches of two pieces face, and how squarely they meet.
+#pragma once
+
+#include "rt_core/levels/body_pair.hpp"
+
+namespace palpate::levels {
+
+/// A point this near to a triangle of a patch lies on it. Baked vertices are rounded to 6e-8 and
+/// hulls are checked against the mesh to 1e-7.
+inline constexpr double kOnSurface = 1e-6;
+
+/// A way to part the hulls of a and b, in the coordinates of a: moving a by depth * normal takes
+/// point_a out of b.
+struct Way {
+  Vec3d normal;
+  Vec3d point_a;
+  double depth = 0;
+};
+
+/// The mean normal of a patch, in piece coordinates; shorter than one, or zero where it faces all
+/// ways.
+inline Vec3d patch_normal(const image::Piece& piece) noexcept {
+  return {static_cast<double>(piece.patch_normal[0]), static_cast<double>(piece.patch_normal[1]),
+          static_cast<double>(piece.patch_normal[2])};
+}
+
+inline Vec3d vertex_of(const image::Vertex& v) noexcept {
+  return {static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),
+          static_cast<double>(v.position[2])};
+}
+
+/// A point of a's coordinates in those of b.
+inline Vec3d to_b(const PairState& pair, Vec3d point) noexcept {
+  return transpose(pair.b_in_a.rotation) * (point - pair.b_in_a.translation);
+}
+
+/// Is a point (piece coordinates) on the patch of the piece? O(triangles of the patch)
+[[nodiscard]] bool on_patch(const ImageView& image, const image::Piece& piece,
+                            Vec3d point) noexcept;
+
+/// How squarely two patches meet along a direction from b to a: 1 and more where that lies in the
+/// cone of normals of both, less by as much as the cosine falls beyond the cone of the less square.
+[[nodiscard]] double squareness(const PairState& pair, const image::Piece& a, const image::Piece& b,
+                                Vec3d direction) noexcept;
+
+/// Have patches only just met, so that the way the hulls part soonest is the one they came? 1 where
+/// they begin to overlap, 0 from a quarter of delta on. Less, and 0 at last, where they meet less
+/// squarely than to a quarter: such a way may lead along a surface that goes on. 0 where it leads
+/// through virtual faces.
+/// Cost: O(triangles of both patches)
+[[nodiscard]] double just_met(const PairState& pair, const image::Piece& a, const image::Piece& b,
+                              const Way& way) noexcept;
+
+}  // namespace palpate::levels
