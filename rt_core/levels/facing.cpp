@@ -2,11 +2,13 @@
 #include "rt_core/levels/facing.hpp"
 
 #include "rt_core/geometry/smooth_step.hpp"
+#include "rt_core/levels/rules.hpp"
 
 namespace palpate::levels {
 namespace {
 
 using image::Piece;
+using image::PieceFlag;
 using image::Triangle;
 
 /// Of delta: patches that overlap by less have only just met.
@@ -49,6 +51,7 @@ double squareness(const Piece& piece, Vec3d normal, Vec3d outward) noexcept {
 }  // namespace
 
 bool on_patch(const ImageView& image, const Piece& piece, Vec3d point) noexcept {
+  if (has(piece, PieceFlag::all_real)) return true;
   const Triangle* triangles = image.triangles.data() + piece.first_triangle;
   const image::Vertex* vertices = image.vertices.data() + piece.first_vertex;
   for (std::uint32_t i = 0; i < piece.triangles; ++i) {

@@ -35,7 +35,7 @@ inline Vec3d to_b(const PairState& pair, Vec3d point) noexcept {
   return transpose(pair.b_in_a.rotation) * (point - pair.b_in_a.translation);
 }
 
-/// Is a point (piece coordinates) on the patch of the piece? O(triangles of the patch)
+/// Is a point of the hull's surface (piece coordinates) on the patch? O(triangles of the patch)
 [[nodiscard]] bool on_patch(const ImageView& image, const image::Piece& piece,
                             Vec3d point) noexcept;
 
