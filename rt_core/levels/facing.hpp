@@ -18,8 +18,7 @@ struct Way {
   double depth = 0;
 };
 
-/// The mean normal of a patch, in piece coordinates; shorter than one, or zero where it faces all
-/// ways.
+/// Piece::patch_normal: the way a patch faces, in piece coordinates; 0 where that is not told.
 inline Vec3d patch_normal(const image::Piece& piece) noexcept {
   return {static_cast<double>(piece.patch_normal[0]), static_cast<double>(piece.patch_normal[1]),
           static_cast<double>(piece.patch_normal[2])};
@@ -41,6 +40,7 @@ inline Vec3d to_b(const PairState& pair, Vec3d point) noexcept {
 
 /// How squarely two patches meet along a direction from b to a: 1 and more where that lies in the
 /// cone of normals of both, less by as much as the cosine falls beyond the cone of the less square.
+/// A patch that does not tell which way it faces is met squarely.
 [[nodiscard]] double squareness(const PairState& pair, const image::Piece& a, const image::Piece& b,
                                 Vec3d direction) noexcept;
 
