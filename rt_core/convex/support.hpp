@@ -44,8 +44,7 @@ struct Farthest {
 
 /// Position of a vertex in hull coordinates, unscaled.
 inline Vec3d position(const Hull& hull, std::uint32_t vertex) noexcept {
-  const float* p = hull.vertices[vertex].position;
-  return vec_cast<double>(Vec3f{p[0], p[1], p[2]});
+  return vec3d(hull.vertices[vertex].position);
 }
 
 }  // namespace palpate::convex

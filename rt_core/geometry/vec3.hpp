@@ -105,4 +105,9 @@ constexpr Mat3<T> operator*(const Mat3<T>& a, const Mat3<T>& b) noexcept {
           {dot(a.row2, t.row0), dot(a.row2, t.row1), dot(a.row2, t.row2)}};
 }
 
+/// Three floats, as images keep points and directions.
+constexpr Vec3d vec3d(const float* xyz) noexcept {
+  return {static_cast<double>(xyz[0]), static_cast<double>(xyz[1]), static_cast<double>(xyz[2])};
+}
+
 }  // namespace palpate

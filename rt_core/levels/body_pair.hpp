@@ -49,6 +49,11 @@ struct PairState {
 /// Sets the poses of this tick (unit quaternions) and advances the odometers.
 void move(PairState& pair, const Pose& a, const Pose& b) noexcept;
 
+/// A point of a's coordinates in those of b.
+inline Vec3d to_b(const PairState& pair, Vec3d point) noexcept {
+  return transpose(pair.b_in_a.rotation) * (point - pair.b_in_a.translation);
+}
+
 /// Approximates the surface below it.
 inline bool is_simplified(const image::Piece& piece) noexcept {
   return piece.surface_deviation > 0 || piece.hausdorff > 0;
@@ -58,8 +63,7 @@ convex::Hull hull_of(const ImageView& image, const image::Piece& piece, double s
 
 /// Centre of a piece's bounding sphere, in the coordinates of its body.
 inline Vec3d centre_of(const image::Piece& piece, double scale) noexcept {
-  return scale * Vec3d{static_cast<double>(piece.centre[0]), static_cast<double>(piece.centre[1]),
-                       static_cast<double>(piece.centre[2])};
+  return scale * vec3d(piece.centre);
 }
 
 /// Lower bound of the distance of two pieces from their bounding spheres; negative where these

@@ -56,8 +56,9 @@ bool on_patch(const ImageView& image, const Piece& piece, Vec3d point) noexcept 
   const image::Vertex* vertices = image.vertices.data() + piece.first_vertex;
   for (std::uint32_t i = 0; i < piece.triangles; ++i) {
     const Triangle& t = triangles[i];
-    if (on_triangle(point, vertex_of(vertices[t.vertices[0]]), vertex_of(vertices[t.vertices[1]]),
-                    vertex_of(vertices[t.vertices[2]]))) {
+    if (on_triangle(point, vec3d(vertices[t.vertices[0]].position),
+                    vec3d(vertices[t.vertices[1]].position),
+                    vec3d(vertices[t.vertices[2]].position))) {
       return true;
     }
   }
@@ -72,8 +73,9 @@ double squareness(const PairState& pair, const Piece& a, const Piece& b, Vec3d d
 
 double just_met(const PairState& pair, const Piece& a, const Piece& b, const Way& way) noexcept {
   const double deep = way.depth / (kJustMet * pair.delta);
+  if (!(deep < 1)) return 0;
   const double square = squareness(pair, a, b, way.normal);
-  if (!(deep < 1) || !(square > 0)) return 0;
+  if (!(square > 0)) return 0;
   const Vec3d point_b = way.point_a + way.depth * way.normal;
   if (!on_patch(*pair.image_a, a, (1.0 / pair.scale_a) * way.point_a) ||
       !on_patch(*pair.image_b, b, (1.0 / pair.scale_b) * to_b(pair, point_b))) {

@@ -19,20 +19,7 @@ struct Way {
 };
 
 /// Piece::patch_normal: the way a patch faces, in piece coordinates; 0 where that is not told.
-inline Vec3d patch_normal(const image::Piece& piece) noexcept {
-  return {static_cast<double>(piece.patch_normal[0]), static_cast<double>(piece.patch_normal[1]),
-          static_cast<double>(piece.patch_normal[2])};
-}
-
-inline Vec3d vertex_of(const image::Vertex& v) noexcept {
-  return {static_cast<double>(v.position[0]), static_cast<double>(v.position[1]),
-          static_cast<double>(v.position[2])};
-}
-
-/// A point of a's coordinates in those of b.
-inline Vec3d to_b(const PairState& pair, Vec3d point) noexcept {
-  return transpose(pair.b_in_a.rotation) * (point - pair.b_in_a.translation);
-}
+inline Vec3d patch_normal(const image::Piece& piece) noexcept { return vec3d(piece.patch_normal); }
 
 /// Is a point of the hull's surface (piece coordinates) on the patch? O(triangles of the patch)
 [[nodiscard]] bool on_patch(const ImageView& image, const image::Piece& piece,

@@ -19,6 +19,7 @@ constexpr double kLeastDirection = 1e-3;
 /// Original pieces are felt whole up to a right angle beyond their normals, and not at all where
 /// the cosine is less by one over this and more.
 constexpr double kBehind = 2;
+
 /// Is every one of the hull vertices a corner of the triangle?
 bool holds(const Triangle& t, const std::uint32_t (&vertices)[3], std::uint32_t count) noexcept {
   for (std::uint32_t k = 0; k < count; ++k) {
@@ -104,7 +105,7 @@ Extents extents_of(const Parts& parts, Vec3d direction, double offset) noexcept 
     double least = std::numeric_limits<double>::infinity();
     double most = -least;
     for (std::uint32_t k = 0; k < hull.count; ++k) {
-      const double along = offset + dot(direction, hull.scale * vertex_of(hull.vertices[k]));
+      const double along = offset + dot(direction, hull.scale * vec3d(hull.vertices[k].position));
       least = along < least ? along : least;
       most = along > most ? along : most;
     }

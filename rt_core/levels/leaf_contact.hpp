@@ -45,8 +45,9 @@ struct LeafContact {
 /// @param query         the result for the hulls of a and b
 /// @param reach         only contacts nearer than this are wanted
 /// @param most_queries  to spend on triangles; beyond that the contact may not be the nearest
-/// Cost: none beyond the query for closed meshes; else at most kMaxOpenPatchTriangles^2 queries, of
-/// which all but a few are told apart by their extents. Penetration: see convex/.
+/// Cost: no query beyond the caller's for closed meshes; else at most kMaxOpenPatchTriangles^2
+/// queries, of which all but a few are told apart by their extents. Penetration: see convex/. Where
+/// witnesses are told from virtual faces, O(triangles of both patches).
 LeafContact leaf_contact(const PairState& pair, const image::Piece& a, const image::Piece& b,
                          const convex::Distance& query, const convex::Cache& cache, double reach,
                          std::uint32_t most_queries, convex::PenetrationScratch& scratch) noexcept;

@@ -44,8 +44,7 @@ void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
   node.contact = kFound;
   node.leaf_a = node.leaf_b = kNone;
   node.witness_a = vec_cast<float>(contact.point_a);
-  node.witness_b = vec_cast<float>(transpose(pair.b_in_a.rotation) *
-                                   (contact.point_b - pair.b_in_a.translation));
+  node.witness_b = vec_cast<float>(to_b(pair, contact.point_b));
   const double share = contact.share > kLeastShare ? contact.share : kLeastShare;
   node.normal = vec_cast<float>(share * contact.normal);
   constexpr double kRoundingUp = 1 + 1e-6;

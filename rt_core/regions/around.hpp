@@ -20,8 +20,8 @@ struct Sector {
   Vec3d to{};
 };
 
-/// The angle that a sector takes up, to 1e-4 (Abramowitz and Stegun 1964, 4.4.45: the arc cosine by
-/// a square root).
+/// The angle that a sector takes up, 0 to pi, to 1e-4 (Abramowitz and Stegun 1964, 4.4.45: the arc
+/// cosine by a square root).
 [[nodiscard]] inline double angle_of(const Sector& s) noexcept {
   constexpr double kHalfTurn = 3.14159265358979323846;
   const double size = sqrt_of(squared_norm(s.from) * squared_norm(s.to));

@@ -23,10 +23,6 @@ constexpr Mat3d kRays[] = {{{0.8, -0.6, 0.0}, {0.36, 0.48, -0.8}, {0.48, 0.64, 0
 
 bool is_one(const ImageView& body) noexcept { return body.header->source_components == 1; }
 
-Vec3d vec(const float* p) noexcept {
-  return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
-}
-
 class Ray {
  public:
   Ray(const Kernels& kernels, const ImageView& body, Vec3d from, const Mat3d& axes,
@@ -79,8 +75,8 @@ class Ray {
   static double area(Vec3d p, Vec3d q) noexcept { return p.x * q.y - q.x * p.y; }
 
   void pass(const RegionTriangle& t) noexcept {
-    const Vec3d p[3] = {axes_ * (vec(t.corners) - from_), axes_ * (vec(t.corners + 3) - from_),
-                        axes_ * (vec(t.corners + 6) - from_)};
+    const Vec3d p[3] = {axes_ * (vec3d(t.corners) - from_), axes_ * (vec3d(t.corners + 3) - from_),
+                        axes_ * (vec3d(t.corners + 6) - from_)};
     const double e[3] = {area(p[1], p[2]), area(p[2], p[0]), area(p[0], p[1])};
     const bool left = e[0] > 0 || e[1] > 0 || e[2] > 0;
     const bool right = e[0] < 0 || e[1] < 0 || e[2] < 0;
@@ -123,13 +119,13 @@ Side contained(const Kernels& kernels, const levels::PairState& pair, SearchScra
   const Mat3d& r = pair.b_in_a.rotation;
   const Vec3d t = pair.b_in_a.translation;
   if (is_one(*pair.image_a)) {
-    const Vec3d of_a = pair.scale_a * vec(pair.image_a->region_triangles[0].corners);
+    const Vec3d of_a = pair.scale_a * vec3d(pair.image_a->region_triangles[0].corners);
     const Vec3d in_b = (1.0 / pair.scale_b) * (transpose(r) * (of_a - t));
     const Side side = side_of(kernels, *pair.image_b, in_b, scratch, pace);
     if (side != Side::outside) return side;
   }
   if (is_one(*pair.image_b)) {
-    const Vec3d of_b = pair.scale_b * vec(pair.image_b->region_triangles[0].corners);
+    const Vec3d of_b = pair.scale_b * vec3d(pair.image_b->region_triangles[0].corners);
     const Vec3d in_a = (1.0 / pair.scale_a) * (r * of_b + t);
     return side_of(kernels, *pair.image_a, in_a, scratch, pace);
   }

@@ -52,7 +52,8 @@ struct CrossingScratch {
 /// from the beginning on, as it was before it crossed, however large the triangles are. So is an
 /// edge that crosses an edge: where the surfaces have only just met (levels/facing.hpp) and the
 /// curve is short, the least way out of the pieces is the way they came, and counts.
-/// Cost: one penetration query and up to six support points a pair.
+/// Cost: one penetration query and up to six support points a pair, and its patches' triangles
+/// where it has only just met.
 Crossing overlap(const levels::PairState& pair, CrossingScratch& scratch) noexcept;
 
 }  // namespace palpate::regions

@@ -16,7 +16,7 @@ Vec3d centre_of(const levels::PairState& pair, std::uint32_t region) noexcept {
   const Vec3d in_a = pair.scale_a * Vec3d{static_cast<double>(over.centre[0][r.slot]),
                                           static_cast<double>(over.centre[1][r.slot]),
                                           static_cast<double>(over.centre[2][r.slot])};
-  return transpose(pair.b_in_a.rotation) * (in_a - pair.b_in_a.translation);
+  return to_b(pair, in_a);
 }
 
 }  // namespace

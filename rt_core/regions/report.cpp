@@ -113,6 +113,8 @@ class Report {
   /// mean of their normals, weighted by the angles that they take up there, does not (Baerentzen
   /// and Aanaes 2005). Not told where the interval is so open that the nearest may be a face before
   /// this one, on a wall thinner than the interval; nor from a surface that is open to its back.
+  /// Most contacts meet their witness's face from before it and are told at once; so is, wrongly,
+  /// what is inside just beyond the tip of a pit as sharp as a needle.
   bool is_behind(const Active& item, Vec3d on_b, Vec3d normal) noexcept {
     constexpr double kSquare = 0.5;    // where none is met so squarely, blades meet
     constexpr double kLeast = 1e-3;    // of the mean: less is rounding, on a blade's edge
@@ -137,8 +139,7 @@ class Report {
   }
 
   static Vec3d in_image_of_b(const PairState& pair, Vec3d point) noexcept {
-    return (1 / pair.scale_b) *
-           (transpose(pair.b_in_a.rotation) * (point - pair.b_in_a.translation));
+    return (1 / pair.scale_b) * to_b(pair, point);
   }
 
   /// The outward normal of a triangle of b.
