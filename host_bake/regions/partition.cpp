@@ -130,7 +130,9 @@ class Divider {
         odd = n;
       }
     }
-    if (least >= options_.cosine) return 0;
+    const bool turns = least < options_.cosine;
+    // Groups are at most twice as far apart as the farthest normal is from the mean.
+    if (!turns && 2 * least * least - 1 >= options_.walls_cosine) return 0;
     Vec3d to[2] = {mean, odd};
     const auto is_odd = [&](std::uint32_t f) {
       return dot(normals_[f], to[1]) > dot(normals_[f], to[0]);
@@ -141,6 +143,7 @@ class Divider {
       to[0] = unit(sum[0]);
       to[1] = unit(sum[1]);
     }
+    if (!turns && dot(to[0], to[1]) >= options_.walls_cosine) return 0;
     const auto middle = std::stable_partition(faces.begin(), faces.end(),
                                               [&](std::uint32_t f) { return !is_odd(f); });
     if (middle == faces.begin() || middle == faces.end()) return divide_position(node, false);

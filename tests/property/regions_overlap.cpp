@@ -154,6 +154,21 @@ std::vector<Vec3d> forces_along(const std::vector<Pose>& path, BakedScene& scene
   return forces_N;
 }
 
+double largest(const std::vector<Vec3d>& forces_N) {
+  double most_N = 0;
+  for (const Vec3d& force_N : forces_N) most_N = std::max(most_N, norm(force_N));
+  return most_N;
+}
+
+/// Root mean square of the difference over the largest of the first ones.
+double difference(const std::vector<Vec3d>& first_N, const std::vector<Vec3d>& other_N) {
+  double square_N2 = 0;
+  for (std::size_t t = 0; t < first_N.size(); ++t) {
+    square_N2 += squared_norm(other_N[t] - first_N[t]) / double(first_N.size());
+  }
+  return std::sqrt(square_N2) / largest(first_N);
+}
+
 /// A region tells its nearest place alone, yet it hardly matters what it is: images for other
 /// contact tolerances have regions of other sizes. The first ones are for this one.
 TEST(RegionsOverlap, force_hardly_depends_on_how_surfaces_are_divided) {
@@ -171,16 +186,51 @@ TEST(RegionsOverlap, force_hardly_depends_on_how_surfaces_are_divided) {
     if (path.empty()) path = ground(scene, kDelta_m);
     const std::vector<Vec3d> forces_N = forces_along(path, scene);
     if (first_N.empty()) first_N = forces_N;
-    double square_N2 = 0;
-    double peak_N = 0;
-    for (std::size_t t = 0; t < path.size(); ++t) {
-      square_N2 += squared_norm(forces_N[t] - first_N[t]) / double(path.size());
-      peak_N = std::max(peak_N, norm(first_N[t]));
-    }
-    EXPECT_GT(peak_N, 0.1);
-    EXPECT_LT(std::sqrt(square_N2), kMostDifference * peak_N) << made_for;
+    EXPECT_GT(largest(first_N), 0.1);
+    const double differs = difference(first_N, forces_N);
+    EXPECT_LT(differs, kMostDifference) << made_for;
     RecordProperty("difference_" + std::to_string(upper.view.regions.size()),
-                   std::to_string(std::sqrt(square_N2) / peak_N));
+                   std::to_string(differs));
+  }
+}
+
+/// A screw pushed from all sides in its nut, up to 0.15 delta.
+std::vector<Pose> pushed(BakedScene& scene, double delta_m) {
+  std::vector<Pose> path;
+  for (int k = 0; k < 40; ++k) {
+    const Vec3d to{std::cos(0.9 * k), std::sin(0.9 * k), std::cos(0.37 * k)};
+    double way_m = 0;
+    for (double step_m = 0.5 * delta_m; step_m > 1e-3 * delta_m; step_m *= 0.5) {
+      for (int more = 0; more < 8; ++more) {
+        const Pose poses[2] = {{(way_m + step_m) * to, {}}, {}};
+        const TickResult r = tick_or_fail(*scene.engine, poses);
+        if (!r.contacts.empty() && r.min_distance_m < 0.15 * delta_m) break;
+        way_m += step_m;
+      }
+    }
+    path.push_back({way_m * to, {}});
+  }
+  return path;
+}
+
+/// Both flanks of a thread are near. A region that held two would tell of the nearer one alone.
+TEST(RegionsOverlap, both_flanks_of_a_thread_are_felt_where_regions_are_as_wide_as_it) {
+  constexpr double kDeltaRel = 0.02;
+  constexpr double kMostDifference = 0.1;
+  std::vector<Pose> path;
+  std::vector<Vec3d> fine_N;
+  for (const double made_for : {0.5 * kDeltaRel, kDeltaRel}) {
+    const BakedBody screw = baked(bake::make_model("screw", 8000), made_for);
+    const BakedBody nut = baked(bake::make_model("nut", 8000), made_for);
+    const double delta_m = kDeltaRel * nut.view.header->radius_m;
+    BakedScene scene({screw.view, nut.view}, {{0, 1}}, settings(delta_m));
+    if (path.empty()) path = pushed(scene, delta_m);
+    const std::vector<Vec3d> forces_N = forces_along(path, scene);
+    if (fine_N.empty()) fine_N = forces_N;
+    EXPECT_GT(largest(fine_N), 0.5 * kStiffness_N_per_m * delta_m);
+    const double differs = difference(fine_N, forces_N);
+    EXPECT_LT(differs, kMostDifference) << screw.view.regions.size() << " regions";
+    RecordProperty("thread_" + std::to_string(screw.view.regions.size()), std::to_string(differs));
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "host_bake/mesh/mesh.hpp"
 #include "host_bake/regions/region_tree.hpp"
+#include "rt_core/regions/region_triangle.hpp"
 #include "tests/support/baked_scene.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -157,21 +158,47 @@ TEST(RegionTree, Leaves_are_nearly_full_and_regions_no_larger_than_asked) {
   }
 }
 
+/// Least cosine between normals of one region.
+double least_cosine(const bake::RegionTree& tree) {
+  double least = 1;
+  std::vector<std::vector<Vec3d>> normals(tree.regions.size());
+  for (const image::RegionTriangle& t : tree.triangles) {
+    const Vec3d n = regions::normal_of(t);
+    normals[t.region].push_back((1 / norm(n)) * n);
+  }
+  for (const std::vector<Vec3d>& of_region : normals) {
+    for (const Vec3d& n : of_region) {
+      for (const Vec3d& other : of_region) least = std::min(least, dot(n, other));
+    }
+  }
+  return least;
+}
+
 TEST(RegionTree, Opposite_walls_are_in_different_regions) {
   bake::Mesh plate;
   for (int i = 0; i < 8; ++i) append(plate, box(0.1, 0.1, 0.002), 0.2 * i, 0, 0);
-  const bake::RegionTree tree = tree_of(plate, 0.05);
-  std::vector<double> up(tree.regions.size()), down(tree.regions.size());
-  for (const image::RegionTriangle& t : tree.triangles) {
-    const auto p = [&](int i) {
-      return Vec3d{double(t.corners[3 * i]), double(t.corners[3 * i + 1]),
-                   double(t.corners[3 * i + 2])};
-    };
-    const Vec3d n = cross(p(1) - p(0), p(2) - p(0));
-    up[t.region] += std::max(0.0, n.z);
-    down[t.region] += std::max(0.0, -n.z);
-  }
-  for (std::size_t i = 0; i < up.size(); ++i) EXPECT_EQ(std::min(up[i], down[i]), 0);
+  EXPECT_GT(least_cosine(tree_of(plate, 0.05)), 0.9);
+}
+
+/// A roof of two slopes and two gables; each slope turns away from `up` by the angle of `steep`.
+bake::Mesh roof(double half_width, double steep, double length) {
+  bake::Mesh m;
+  const double x = half_width, h = half_width * steep;
+  m.points = {{-x, 0, 0}, {x, 0, 0}, {0, 0, h}, {-x, length, 0}, {x, length, 0}, {0, length, h}};
+  m.faces = {{0, 1, 2}, {3, 5, 4}, {0, 2, 5}, {0, 5, 3},
+             {1, 4, 5}, {1, 5, 2}, {0, 3, 4}, {0, 4, 1}};
+  return m;
+}
+
+/// No normal is far from the mean of the two slopes, but they are from one another.
+TEST(RegionTree, Slopes_that_face_apart_are_in_different_regions) {
+  const bake::RegionTree tree = tree_of(quartered(roof(0.1, 1.1, 2), 4), 0.02);
+  EXPECT_GT(least_cosine(tree), 0);
+}
+
+TEST(RegionTree, Slopes_that_do_not_face_apart_share_regions) {
+  const bake::RegionTree tree = tree_of(quartered(roof(0.1, 0.5, 2), 4), 0.02);
+  EXPECT_NEAR(least_cosine(tree), 0.6, 1e-3);  // of two that lean by atan(0.5)
 }
 
 TEST(RegionTree, Smallest_meshes_have_one_region) {
