@@ -4,7 +4,8 @@
 namespace palpate::force {
 namespace {
 
-constexpr int kMostProbes = 64;  // beyond that a corner finds no room; half full takes up to 50
+/// Beyond that a corner finds no room. Half full, tables of thousands take up to 50.
+constexpr int kMostProbes = 128;
 
 /// Of a table, for each corner that may come into use.
 constexpr std::size_t kRoom = 2;

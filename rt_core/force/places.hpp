@@ -52,7 +52,7 @@ class Places {
   ///                  stays in the cache
   void begin(double width_m, std::size_t contacts) noexcept;
 
-  /// Brings a contact. O(1): at most 64 looks for each of four corners
+  /// Brings a contact. O(1): at most 128 looks for each of four corners
   /// @param point_m  in the axes of the grid
   /// @param mass     of the contact, >= 0
   /// @param part     what it may have of that: all, or less where it is one of several copies

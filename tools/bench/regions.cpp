@@ -6,20 +6,23 @@
 //                                                default: all, with 0.01, 0.02 and 0.05; detail
 //                                                left out before baking, against all of it
 //   bench_regions TICKS growth [KERNELS]         jaws with more and more triangles at one motion
-//   bench_regions TICKS detail [KERNELS]         the same with detail left out before baking;
-//                                                KERNELS: scalar, base, avx2, avx512; default: best
+//   bench_regions TICKS detail [KERNELS]         the same with detail left out before baking
+//   bench_regions TICKS divided [KERNELS]        all scenes at 0.02 by width of regions, against
+//                                                the exact force of those a quarter as wide
 //   bench_regions TICKS instructions             jaws by each instruction set of this processor
+//
+// KERNELS: scalar, base, avx2, avx512; default: best.
 //
 // A row (CSV) for each scene, contact tolerance (relative to the radius) and mode: exact with all
 // state kept (warm) or forgotten at each tick (cold), with a tolerance of force, and under budgets
 // of time or of work units. Times are of the thread's own processor clock, so that a busy machine
 // shows in the caches only; units are those of the engine (TickResult::queries), counted and not
-// timed; settled_units are of the second half of the ticks. force_nrmse is against the exact ticks,
-// of their largest force, over all ticks but the first ten; felt_nrmse is that of the force on
-// display, where force_nrmse sums over regions; bound_of_force is the median of the certified error
-// over the largest sum; force_step is the largest change of that sum from tick to tick.
-// Where FCL is installed, its distance of the same meshes (one least distance, OBBRSS) is asked
-// between the exact ticks, pose by pose; of_fcl is our time by its time, summed over the run.
+// timed. force_nrmse is against the exact ticks, of their largest force, over all ticks but the
+// first ten; felt_nrmse is that of the force on display, where force_nrmse sums over regions;
+// settled_* are of the second half of the ticks; bound_of_force is the median of the certified
+// error over the largest sum; force_step is the largest change of that sum from tick to tick. Where
+// FCL is installed, its distance of the same meshes (one least distance, OBBRSS) is asked between
+// the exact ticks, pose by pose; of_fcl is our time by its time, summed over the run.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -40,7 +43,7 @@
 namespace palpate::bench {
 namespace {
 
-constexpr int kSettled = 10;  // ticks after which a budgeted run counts
+constexpr int kStarted = 10;  // ticks after which a budgeted run counts
 
 constexpr SceneName kScenes[] = {{"jaws", "jaw_lower", "jaw_upper", true},
                                  {"tips", "jaw_lower", "jaw_lower", false, true},
@@ -143,12 +146,13 @@ void print_row(const char* scene, double delta_rel, const Plan& plan, const Run&
   }
   const std::vector<double> settled(r.units.begin() + std::ptrdiff_t(r.units.size() / 2),
                                     r.units.end());
-  std::printf("%s,%g,%s,%g,%g,%g,%.1f,%.1f,%.1f,%.0f,%.0f,%.1f,%.1f,%.4f,%.4f,%.4f,%.4f", scene,
-              delta_rel, plan.cold ? "cold" : "warm", plan.budget_us, double(plan.budget_units),
-              plan.tolerance_N, mean(r.us), percentile(r.us, 0.5), percentile(r.us, 0.99),
-              mean(r.units), mean(settled), mean(r.near), mean(r.contacts),
-              nrmse(r.force_N, exact.force_N, kSettled), nrmse(r.felt_N, exact.felt_N, kSettled),
-              percentile(r.bound_N, 0.5) / peak, step / peak);
+  std::printf("%s,%g,%s,%g,%g,%g,%.1f,%.1f,%.1f,%.0f,%.0f,%.1f,%.1f,%.4f,%.4f,%.4f,%.4f,%.4f",
+              scene, delta_rel, plan.cold ? "cold" : "warm", plan.budget_us,
+              double(plan.budget_units), plan.tolerance_N, mean(r.us), percentile(r.us, 0.5),
+              percentile(r.us, 0.99), mean(r.units), mean(settled), mean(r.near), mean(r.contacts),
+              nrmse(r.force_N, exact.force_N, kStarted), nrmse(r.felt_N, exact.felt_N, kStarted),
+              nrmse(r.felt_N, exact.felt_N, r.felt_N.size() / 2), percentile(r.bound_N, 0.5) / peak,
+              step / peak);
   if (r.fcl_us > 0) {
     std::printf(",%.1f,%.3f\n", r.fcl_us, mean(r.us) / r.fcl_us);
   } else {
@@ -199,6 +203,34 @@ void measure(const SceneName& scene, const Asked& asked, int ticks) {
   Bench less(less_a, less_b, bench.settings());
   print_row(scene.name, delta_rel, {}, run(less, poses, {}), exact);
   print_plans(scene, delta_rel, less, poses, exact);
+}
+
+/// How much of a force is the choice of regions: of their width times a share, against a quarter.
+void measure_divided(int ticks, const regions::Kernels& kernels) {
+  constexpr double kDeltaRel = 0.02;
+  for (const SceneName& scene : kScenes) {
+    const Body b(scene.b, kDeltaRel, bake::ForEngine::regions);
+    std::vector<Pose> poses;
+    double delta = 0;
+    std::optional<Run> truth;
+    for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+      const Body a(scene.a, share * kDeltaRel, bake::ForEngine::regions);
+      if (poses.empty()) {
+        delta = kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
+        poses = motion(scene, a, b, delta, ticks);
+      }
+      Bench bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
+      bench.use(kernels);
+      char name[64];
+      std::snprintf(name, sizeof name, "%s_%g", scene.name, share);
+      for (const Plan& plan : {Plan{}, Plan{.budget_us = 250}, Plan{.budget_units = 2500},
+                               Plan{.cold = true, .budget_units = 2500}}) {
+        const Run found = run(bench, poses, plan);
+        if (!truth) truth = found;
+        print_row(name, kDeltaRel, plan, found, *truth);
+      }
+    }
+  }
 }
 
 /// Interlocking jaws at the poses of the default ones, the same contact however fine they are, with
@@ -260,7 +292,7 @@ const regions::Kernels* kernels_named(const char* name) {
 }
 
 /// By each table of kernels that runs here, narrowest first, turn by turn.
-void measure_instructions(int ticks) {
+void measure_instructions(int ticks, const regions::Kernels&) {
   constexpr double kDeltaRel = 0.02;
   constexpr int kTurns = 5;
   const SceneName& jaws = kScenes[0];
@@ -313,16 +345,15 @@ int main(int argc, char** argv) {
   const int ticks = argc > 1 ? std::max(20, std::atoi(argv[1])) : 300;
   std::printf(
       "scene,delta_rel,mode,budget_us,budget_units,tolerance_N,mean_us,median_us,p99_us,units,"
-      "settled_units,near_regions,contacts,force_nrmse,felt_nrmse,bound_of_force,force_step,fcl_us,"
-      "of_fcl\n");
+      "settled_units,near_regions,contacts,force_nrmse,felt_nrmse,settled_felt_nrmse,"
+      "bound_of_force,force_step,fcl_us,of_fcl\n");
   constexpr struct {
     const char* name;
     void (*measure)(int ticks, const palpate::regions::Kernels& kernels);
-  } kOthers[] = {{"growth", measure_growth}, {"detail", measure_detail}};
-  if (argc == 3 && std::strcmp(argv[2], "instructions") == 0) {
-    measure_instructions(ticks);
-    return 0;
-  }
+  } kOthers[] = {{"growth", measure_growth},
+                 {"detail", measure_detail},
+                 {"divided", measure_divided},
+                 {"instructions", measure_instructions}};
   for (const auto& other : kOthers) {
     if (argc < 3 || std::strcmp(argv[2], other.name) != 0) continue;
     const palpate::regions::Kernels* kernels =

@@ -14,9 +14,11 @@ namespace {
 
 /// More than any scene needs; regions, which are few, no more than stays in the caches when it is
 /// written anew.
-Limits limits_of(EngineKind engine) {
+Limits limits_of(EngineKind engine, const ImageView& tool) {
   if (engine == EngineKind::levels) return {.nodes = 1u << 19, .contacts = 1u << 16};
-  return {.nodes = 1, .contacts = 1u << 12};
+  const auto regions = static_cast<std::uint32_t>(tool.regions.size());
+  const std::uint32_t contacts = std::max(1u << 12, 2 * regions);
+  return {.nodes = 1, .contacts = contacts, .clusters = 4 * contacts};
 }
 
 Vec3d centre_of(const Body& body) {
@@ -103,13 +105,13 @@ Body::Body(const char* model, double delta_rel, bake::ForEngine engine, std::siz
 
 Bench::Bench(const Body& a, const Body& b, const Settings& settings)
     : views_{a.view, b.view}, settings_(settings) {
-  bytes_ = required_bytes(scene(), limits_of(settings_.engine), settings_.engine);
+  bytes_ = required_bytes(scene(), limits_of(settings_.engine, views_[0]), settings_.engine);
   memory_.reset(new (std::align_val_t(64)) std::byte[bytes_]);
   forget();
 }
 
 void Bench::forget() {
-  const Limits limits = limits_of(settings_.engine);
+  const Limits limits = limits_of(settings_.engine, views_[0]);
   if (create(scene(), settings_, limits, {memory_.get(), bytes_}, engine_) != Status::ok) {
     std::abort();
   }
