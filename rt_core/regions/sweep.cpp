@@ -12,8 +12,8 @@ namespace {
 using image::RegionNode;
 
 /// Parts of b are divided until they are no larger than this many times the part of a, squared:
-/// dividing them further tells few more regions apart, and costs a third of the sweep.
-constexpr float kCoarse2 = 4;
+/// dividing them further tells few more regions apart, and costs most of the sweep.
+constexpr float kCoarse2 = 16;
 
 class Sweep {
  public:
@@ -32,6 +32,7 @@ class Sweep {
     for (std::uint32_t slot = 0; slot < root.children; ++slot) split_b(child_name(0, slot), 0);
     while (size_ > 0) {
       const Candidate top = scratch_.stack[--size_];
+      if (tells_nothing(top)) continue;
       if (pace_.go_on()) {
         descend(top);
       } else {
@@ -44,6 +45,15 @@ class Sweep {
   /// Children of a are nodes here: nothing below regions is looked at.
   const RegionNode& node_below_a(std::uint32_t a) const noexcept {
     return frame_.a->region_nodes[frame_.a->region_nodes[node_of(a)].first + slot_of(a)];
+  }
+
+  /// All regions that it is about are known to be no farther.
+  bool tells_nothing(const Candidate& pair) const noexcept {
+    const RegionNode& below = node_below_a(pair.a);
+    for (const float least : out_squared_.subspan(below.first_region, below.regions)) {
+      if (least > pair.squared) return false;
+    }
+    return true;
   }
 
   void descend(const Candidate& pair) noexcept {

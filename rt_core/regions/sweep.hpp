@@ -10,7 +10,8 @@
 namespace palpate::regions {
 
 /// Descends both trees together down to the regions, so that what is far is told once for many
-/// regions; parts of b are divided until they are no larger than twice the region. The bounds hold
+/// regions; parts of b are divided until they are no larger than four times the region, and passed
+/// over where all regions that they might be near to have found as near a part. The bounds hold
 /// wherever the budget ends it.
 /// @param limit        bounds from here on are not refined
 /// @param out_squared  [regions of a] bounds of their distances from below, squared, in units

@@ -59,15 +59,15 @@ const Case kCases[] = {
     {"regions, exact",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .exact = true},
      kUnlimited,
-     0x5098dec727656369},
+     0x6e62ac61fdc1c145},
     {"regions, 100 units",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      100,
-     0xf6b0c3a0a73eda9d},
+     0x59cf05873dec58d5},
     {"regions, tolerance",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .force_tolerance_N = 3},
      kUnlimited,
-     0xcc24295ed9e93926},
+     0x21ae24ed90553f5b},
 };
 constexpr int kTicks = 200;
 
