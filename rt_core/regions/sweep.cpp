@@ -47,10 +47,15 @@ class Sweep {
     return frame_.a->region_nodes[frame_.a->region_nodes[node_of(a)].first + slot_of(a)];
   }
 
+  /// Of the regions below a child of a.
+  std::span<float> bounds_below(std::uint32_t a) const noexcept {
+    const RegionNode& below = node_below_a(a);
+    return out_squared_.subspan(below.first_region, below.regions);
+  }
+
   /// All regions that it is about are known to be no farther.
   bool tells_nothing(const Candidate& pair) const noexcept {
-    const RegionNode& below = node_below_a(pair.a);
-    for (const float least : out_squared_.subspan(below.first_region, below.regions)) {
+    for (const float least : bounds_below(pair.a)) {
       if (least > pair.squared) return false;
     }
     return true;
@@ -116,10 +121,7 @@ class Sweep {
 
   /// A part of b that is `squared` or more from everything below a child of a.
   void cover(std::uint32_t a, float squared) noexcept {
-    const RegionNode& below = node_below_a(a);
-    for (float& least : out_squared_.subspan(below.first_region, below.regions)) {
-      least = squared < least ? squared : least;
-    }
+    for (float& least : bounds_below(a)) least = squared < least ? squared : least;
   }
 
   const Kernels& kernels_;

@@ -180,7 +180,7 @@ TEST(RegionTree, Opposite_walls_are_in_different_regions) {
   EXPECT_GT(least_cosine(tree_of(plate, 0.05)), 0.9);
 }
 
-/// A roof of two slopes and two gables; each slope turns away from `up` by the angle of `steep`.
+/// A roof of two slopes, which lean by the angle whose tangent is `steep`, two gables and a floor.
 bake::Mesh roof(double half_width, double steep, double length) {
   bake::Mesh m;
   const double x = half_width, h = half_width * steep;

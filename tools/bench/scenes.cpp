@@ -13,7 +13,8 @@ namespace palpate::bench {
 namespace {
 
 /// More than any scene needs; regions, which are few, no more than stays in the caches when it is
-/// written anew.
+/// written anew. Twice as many contacts as regions, for tables of places find room while half full,
+/// and four grid points for each.
 Limits limits_of(EngineKind engine, const ImageView& tool) {
   if (engine == EngineKind::levels) return {.nodes = 1u << 19, .contacts = 1u << 16};
   const auto regions = static_cast<std::uint32_t>(tool.regions.size());
