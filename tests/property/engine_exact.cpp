@@ -92,6 +92,29 @@ TEST(EngineExact, ball_inside_an_open_bowl_touches_its_inner_side) {
   }
 }
 
+// The tree above the original pieces is another one there.
+TEST(EngineExact, contacts_are_the_same_on_images_for_the_regions_engine) {
+  constexpr bake::ForEngine kRegions = bake::ForEngine::regions;
+  const BakedBody a(bumpy_ball(12, 16, 1)), lean_a(bumpy_ball(12, 16, 1), kRegions);
+  const BakedBody b(bumpy_ball(14, 14, 0.8)), lean_b(bumpy_ball(14, 14, 0.8), kRegions);
+  EXPECT_LT(lean_a.view.header->free_levels, a.view.header->free_levels / 2);
+  const Settings settings{.delta_m = 0.05, .exact = true, .cluster_radius_m = 0.1};
+  BakedScene all({a.view, b.view}, {{0, 1}}, settings);
+  BakedScene lean({lean_a.view, lean_b.view}, {{0, 1}}, settings);
+  int touching = 0;
+  for (int i = 0; i < 50; ++i) {
+    const Pose poses[2] = {slid(i), {}};
+    const TickResult r = tick_or_fail(*all.engine, poses);
+    const TickResult s = tick_or_fail(*lean.engine, poses);
+    ASSERT_EQ(r.contacts.size(), s.contacts.size()) << i;
+    if (r.contacts.empty()) continue;
+    ++touching;
+    EXPECT_NEAR(r.min_distance_m, s.min_distance_m, 1e-9) << i;
+    EXPECT_NEAR(norm(r.wrench.force_N - s.wrench.force_N), 0, 1e-6 * norm(r.wrench.force_N)) << i;
+  }
+  EXPECT_GT(touching, 10);
+}
+
 TEST(EngineExact, moving_both_bodies_turns_the_wrench_with_them) {
   const BakedBody a(bumpy_ball(12, 16, 1));
   const BakedBody b(bumpy_ball(14, 14, 0.8));

@@ -98,15 +98,19 @@ TEST(Neighbours, Cube_triangles_meet_in_18_edges) {
   EXPECT_EQ(edge_neighbours(tree, top_pieces(tree)).size(), 18u);
 }
 
-// Whatever the mesh: one root, binary, every level's count true, no piece alone under a parent.
-void expect_sound_tree(const Hierarchy& tree, std::size_t leaves) {
-  ASSERT_EQ(tree.pieces.size(), 2 * leaves - 1);
+// Whatever the mesh: one root, every level's count true, no piece alone under a parent.
+void expect_sound_tree(const Hierarchy& tree, std::size_t leaves, std::size_t most_children = 2) {
+  ASSERT_EQ(tree.levels[0].pieces, leaves);
+  if (most_children == 2) {
+    ASSERT_EQ(tree.pieces.size(), 2 * leaves - 1);
+  }
   EXPECT_EQ(top_pieces(tree),
             std::vector<std::uint32_t>{static_cast<std::uint32_t>(tree.pieces.size() - 1)});
   std::vector<std::uint32_t> alive(tree.levels.size(), 0);
   for (std::uint32_t i = 0; i < tree.pieces.size(); ++i) {
     const TreePiece& piece = tree.pieces[i];
-    EXPECT_EQ(piece.children.size(), piece.level == 0 ? 0u : 2u);
+    EXPECT_GE(piece.children.size(), piece.level == 0 ? 0u : 2u);
+    EXPECT_LE(piece.children.size(), piece.level == 0 ? 0u : most_children);
     for (const std::uint32_t c : piece.children) {
       EXPECT_LT(c, i);
       EXPECT_EQ(tree.pieces[c].parent, i);
@@ -129,6 +133,19 @@ TEST(MergeToRoot, Meshes_of_all_kinds_end_in_one_root) {
     Hierarchy tree = triangle_tree(mesh);
     merge_to_root(tree, {});
     expect_sound_tree(tree, mesh.faces.size());
+  }
+}
+
+TEST(MergeToRoot, More_rounds_make_fewer_levels_of_the_same_root) {
+  for (const Mesh& mesh : {testing::dented_sphere(), testing::two_spheres(20)}) {
+    Hierarchy pairs = triangle_tree(mesh);
+    Hierarchy wide = pairs;
+    merge_to_root(pairs, {});
+    merge_to_root(wide, {}, 4);
+    expect_sound_tree(wide, mesh.faces.size(), 16);
+    EXPECT_LE(4 * (wide.levels.size() - 1), pairs.levels.size() - 1 + 3);
+    EXPECT_LT(wide.pieces.size(), 1.15 * static_cast<double>(mesh.faces.size()));
+    EXPECT_EQ(wide.pieces.back().vertices, pairs.pieces.back().vertices);
   }
 }
 
