@@ -51,6 +51,10 @@ TEST(BakeCommand, Image_and_report_agree) {
   EXPECT_EQ(json["levels"].size(), 1u);
   EXPECT_EQ(json["levels"][0]["triangles"], 6);
   EXPECT_GT(json["engine_bytes"], 0);
+  EXPECT_GT(json["regions"]["count"], 0);
+  EXPECT_GT(json["regions"]["nodes"], 0);
+  EXPECT_GT(json["regions"]["largest_radius_rel"], 0);
+  EXPECT_GT(json["regions"]["engine_bytes"], 0);
   EXPECT_EQ(json["threads"], 2);
   EXPECT_GT(json["peak_bytes"], 0);
   EXPECT_TRUE(json["seconds"].contains("decompose"));

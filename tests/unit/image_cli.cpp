@@ -79,6 +79,7 @@ TEST_F(ImageCommands, InspectJson_has_the_promised_keys) {
   EXPECT_EQ(json.at("levels").size(), 2u);
   EXPECT_EQ(json.at("levels")[0].at("pieces"), 2);
   EXPECT_TRUE(json.at("levels")[1].at("triangles").is_null());
+  EXPECT_TRUE(json.at("regions").is_null());
 }
 
 TEST_F(ImageCommands, InspectVerify_prints_a_line_an_invariant) {

@@ -90,7 +90,7 @@ ImageView view_of(const bake::AlignedCopy& image) {
 }
 
 std::string report_text(const Baked& baked, const ImageView& image) {
-  nlohmann::json json = image_json(image, engine_bytes(image));
+  nlohmann::json json = image_json(image);
   json["seconds"] = baked.report.seconds;
   json["peak_bytes"] = baked.report.peak_bytes;
   json["threads"] = baked.report.threads;

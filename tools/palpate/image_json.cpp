@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/palpate/image_json.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 #include <string>
-
-#include "rt_core/palpate_rt.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -39,15 +38,29 @@ nlohmann::json level_json(const image::Level& level, std::size_t index) {
   return j;
 }
 
-}  // namespace
-
-std::size_t engine_bytes(const ImageView& image) {
-  const std::array bodies{image, image};
-  const std::array pairs{BodyPair{.a = 0, .b = 1}};
-  return required_bytes({.bodies = bodies, .pairs = pairs, .tool = 0}, Limits{});
+nlohmann::json regions_json(const ImageView& image) {
+  if (image.regions.empty()) return nullptr;
+  return {{"count", image.regions.size()},
+          {"largest_radius_rel", largest_region_radius(image)},
+          {"nodes", image.region_nodes.size()},
+          {"engine_bytes", engine_bytes(image, EngineKind::regions)}};
 }
 
-nlohmann::json image_json(const ImageView& image, std::size_t engine_bytes) {
+}  // namespace
+
+std::size_t engine_bytes(const ImageView& image, EngineKind engine) {
+  const std::array bodies{image, image};
+  const std::array pairs{BodyPair{.a = 0, .b = 1}};
+  return required_bytes({.bodies = bodies, .pairs = pairs, .tool = 0}, Limits{}, engine);
+}
+
+float largest_region_radius(const ImageView& image) {
+  float largest = 0;
+  for (const image::Region& region : image.regions) largest = std::max(largest, region.radius);
+  return largest;
+}
+
+nlohmann::json image_json(const ImageView& image) {
   const image::Header& h = *image.header;
   nlohmann::json levels = nlohmann::json::array();
   for (const image::Level& level : image.levels) {
@@ -78,7 +91,8 @@ nlohmann::json image_json(const ImageView& image, std::size_t engine_bytes) {
           {"leaf_pieces", h.leaf_pieces},
           {"tree_depth", h.tree_depth},
           {"max_hull_vertices", h.max_hull_vertices},
-          {"engine_bytes", engine_bytes},
+          {"engine_bytes", engine_bytes(image, EngineKind::levels)},
+          {"regions", regions_json(image)},
           {"levels", levels}};
 }
 

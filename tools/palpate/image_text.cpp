@@ -6,6 +6,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "tools/palpate/image_json.hpp"
+
 namespace palpate::cli {
 namespace {
 
@@ -47,7 +49,7 @@ void append_source(std::string& out, const image::Header& h) {
   append_hash(out, "  SHA-256      ", h.source_sha256);
 }
 
-void append_header(std::string& out, const ImageView& image, std::size_t engine_bytes) {
+void append_header(std::string& out, const ImageView& image) {
   const image::Header& h = *image.header;
   append(out, "image          format %u.%u, %" PRIu64 " bytes\n", unsigned{h.format_major},
          unsigned{h.format_minor}, h.total_bytes);
@@ -69,7 +71,16 @@ void append_header(std::string& out, const ImageView& image, std::size_t engine_
         static_cast<double>(h.s0_min), static_cast<double>(h.partner_area), h.dropped_levels,
         h.dropped_levels == 1 ? "" : "s");
   }
-  append(out, "engine memory  %zu bytes for two bodies of this image\n", engine_bytes);
+  append(out, "engine memory  %zu bytes for two bodies of this image",
+         engine_bytes(image, EngineKind::levels));
+  if (image.regions.empty()) {
+    out += "\n";
+    return;
+  }
+  append(out, " (levels), %zu (regions)\n", engine_bytes(image, EngineKind::regions));
+  append(out, "regions        %zu, of radii up to %.3g, in a tree of %zu nodes\n",
+         image.regions.size(), static_cast<double>(largest_region_radius(image)),
+         image.region_nodes.size());
 }
 
 // The coarsest level that simplification made is the last one that is not free.
@@ -109,9 +120,9 @@ std::string table_2_text(const ImageView& image) {
   return out;
 }
 
-std::string image_text(const ImageView& image, std::size_t engine_bytes) {
+std::string image_text(const ImageView& image) {
   std::string out;
-  append_header(out, image, engine_bytes);
+  append_header(out, image);
   append_table_2(out, image);
   append_levels(out, image);
   return out;

@@ -90,11 +90,11 @@ void inspect(const InspectOptions& options) {
   std::vector<bake::Proof> proofs;
   if (options.verify) proofs = bake::verify(image);
   if (options.json) {
-    nlohmann::json json = image_json(image, engine_bytes(image));
+    nlohmann::json json = image_json(image);
     if (options.verify) json["verify"] = to_json(proofs);
     std::cout << json.dump(2) << "\n";
   } else {
-    std::cout << image_text(image, engine_bytes(image));
+    std::cout << image_text(image);
     print(proofs);
   }
   require_all(proofs, options.image);
