@@ -80,6 +80,7 @@ Certificate certify(const QueryResult& found, double upper_m, double delta_m,
 /// What a tick is made of, whichever engine found it.
 struct Found {
   std::uint32_t contacts = 0;
+  std::uint64_t tail_contacts = 0;  ///< how many take as long
   double min_distance_m = 0;
   std::uint64_t front_nodes = 0;
   std::uint64_t queries = 0;
@@ -92,7 +93,11 @@ Found find_by_levels(Engine& engine, Meter& meter) noexcept {
   if (found.queries > 0) {
     follow(engine.levels.query_ns, meter.refined_ns() / found.queries);
   }
-  return {found.contacts, found.min_distance_m, engine.levels.tree.front().size(), found.queries,
+  return {found.contacts,
+          found.contacts,
+          found.min_distance_m,
+          engine.levels.tree.front().size(),
+          found.queries,
           certify(found, found.upper_m, engine.settings.delta_m, least_error_m(engine.states))};
 }
 
@@ -105,7 +110,11 @@ Found find_by_regions(Engine& engine, Meter& meter) noexcept {
   }
   const regions::QueryResult found = regions::query(engine.regions, demand, meter);
   engine.tally.lap(Stage::refine, meter);
-  Found out{found.contacts, found.min_distance_m, found.near_regions, found.queries,
+  Found out{found.contacts,
+            regions::tail_contacts(found.contacts, found.crossings),
+            found.min_distance_m,
+            found.near_regions,
+            found.queries,
             certify(found, found.min_distance_m, s.delta_m, least_error_m(engine.states))};
   out.certificate.force_bound_N = s.stiffness_N_per_m * found.open_m;
   return out;
@@ -143,7 +152,7 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
   out.certificate = found.certificate;
   out.certificate.units_used = meter.used();
   out.certificate.truncated_by_memory |= penalty.places_full;
-  engine.tail.learn(meter.tail_ns(), found.contacts);
+  engine.tail.learn(meter.tail_ns(), found.tail_contacts);
   engine.tally.lap(Stage::force, meter);
   engine.tally.count([&](auto& counters) { raise_mark(counters.most_contacts, found.contacts); });
   return Status::ok;

@@ -72,6 +72,13 @@ class Meter {
     stop_ns_ = end_ns_;
   }
 
+  /// So many units are left for the tail, at most half of all; unlimited ones stay so.
+  void set_aside(std::uint64_t units) noexcept {
+    if (budget_.units == kUnlimited) return;
+    const std::uint64_t half = budget_.units / 2;
+    stop_units_ = budget_.units - (units < half ? units : half);
+  }
+
   /// Units left, as far as a counter of 32 bits tells.
   [[nodiscard]] std::uint32_t queries_left() const noexcept {
     constexpr std::uint64_t kMost = 0xffffffffu;
@@ -106,9 +113,14 @@ class Meter {
     return budget_.clock_ns != nullptr && now_ns() >= stop_ns_;
   }
 
-  /// Marks the end of refinement: the tail begins.
+  /// Marks the end of refinement: the tail begins. Of what was left for it all units and three
+  /// quarters of the time are to be had again; the rest of the time is for what is not searched.
   void begin_tail() noexcept {
-    if (budget_.clock_ns != nullptr) tail_start_ns_ = now_ns();
+    stop_units_ = budget_.units;
+    if (budget_.clock_ns == nullptr) return;
+    tail_start_ns_ = now_ns();
+    const std::uint64_t deadline = budget_.deadline_ns;
+    stop_ns_ = deadline > tail_start_ns_ ? deadline - (deadline - tail_start_ns_) / 4 : deadline;
   }
   /// Since begin_tail(); 0 without a clock.
   [[nodiscard]] std::uint64_t tail_ns() const noexcept {

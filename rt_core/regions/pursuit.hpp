@@ -30,7 +30,15 @@ struct Pursuit {
   std::uint32_t round = 0;      ///< ticks in which witnesses were followed
   std::uint32_t next_dive = 0;  ///< where the next one begins to dive
   std::uint64_t unit_ns = 0;    ///< time of a work unit; 0: not known
+  double listing_units = 32;    ///< what the pairs that cross in a region take to list, of late
 
+  /// @param complete  false: it would have taken more
+  void learn_listing(double units, bool complete) noexcept {
+    constexpr double kFollowed = 0.125;  // within some eight of them
+    constexpr double kMost = 4096;
+    const double taken = complete ? units : units + listing_units;
+    listing_units += kFollowed * ((taken < kMost ? taken : kMost) - listing_units);
+  }
   void learn_search(double units) noexcept {
     constexpr std::uint32_t kMostSearches = 16;
     if (searches < kMostSearches) ++searches;

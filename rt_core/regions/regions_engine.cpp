@@ -27,6 +27,12 @@ constexpr double kJumpDelta = 2;
 /// is narrower than a share of delta.
 constexpr float kStep = 0.3f;
 constexpr float kLastStep = 0.1f;
+/// But at once where the searches of all would take less than so many times what the tick has left:
+/// steps see more of what a tick has no time for, and take half as much again.
+constexpr double kAtOnce = 1.5;
+/// What may cross the other body goes first, as if its interval were wider by so many delta: how
+/// deep it would be is not in it.
+constexpr float kMayCross = 1;
 /// Done in every tick, however late it is: one that does not get to search at all would find
 /// nothing in the next one either.
 constexpr std::uint64_t kLeastUnits = 64;
@@ -72,25 +78,30 @@ class Query {
     measure_near_pairs();
     for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) settle_side(i);
     refine();
-    learn_time();
     for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) find_way_out(i);
+    result_.truncated_by_units = truncated_ && pace_.units_ended();
+    result_.truncated_by_time = truncated_ && pace_.time_ended();
     meter_.begin_tail();
+    learn_time();
+    pace_.resume();
     certify();
     report(memory_, active(), pace_, result_);
     result_.queries = pace_.used();
     result_.near_regions = count_;
-    result_.truncated_by_units = truncated_ && pace_.units_ended();
-    result_.truncated_by_time = truncated_ && pace_.time_ended();
+    result_.truncated_by_units |= pace_.units_ended();
+    result_.truncated_by_time |= pace_.time_ended();
     return result_;
   }
 
  private:
-  /// By width, for what it may stay open by. Of equal ones, as after a jump, neighbours are far
-  /// apart in the order, so that a budget which ends early has seen something of everywhere.
+  /// By what its force may still change by, for what it may stay open by. Of equal ones, as after a
+  /// jump, neighbours are far apart in the order, so that a budget which ends early has seen
+  /// something of everywhere.
   struct Wider {
     std::span<const Active> active;
     float key(std::uint32_t i) const noexcept {
-      return active[i].width > kClosed ? active[i].width / active[i].weight : 0;
+      const Active& item = active[i];
+      return item.width > kClosed ? (item.width + item.doubt) / item.weight : 0;
     }
     static std::uint32_t scattered(std::uint32_t i) noexcept { return i * 0x9e3779b1u; }
     bool operator()(std::uint32_t a, std::uint32_t b) const noexcept {
@@ -221,6 +232,11 @@ class Query {
     return witness.known() && witness.distance < delta ? witness.distance : delta;
   }
 
+  bool is_crossing(const Active& item) noexcept {
+    const Witness& witness = state_of(item).witness;
+    return witness.known() && witness.distance <= 0;
+  }
+
   bool is_felt(const Active& item) noexcept {
     return upper_of(item) < static_cast<float>(pair_of(item).delta);
   }
@@ -228,12 +244,14 @@ class Query {
   void widen(Active& item) noexcept {
     const float upper = upper_of(item);
     item.width = upper > item.rest ? upper - (item.rest > 0 ? item.rest : 0) : 0;
+    const bool unknown = is_felt(item) || !state_of(item).witness.known();
+    const bool may_cross = demand_.limited && item.rest <= 0 && unknown;
+    item.doubt = may_cross ? kMayCross * static_cast<float>(pair_of(item).delta) : 0;
   }
 
   bool crosses(std::uint32_t index) noexcept {
     for (const Active& item : active()) {
-      const Witness& witness = state_of(item).witness;
-      if (item.pair == index && witness.known() && witness.distance <= 0) return true;
+      if (item.pair == index && is_crossing(item)) return true;
     }
     return false;
   }
@@ -296,7 +314,7 @@ class Query {
 
   void learn_time() noexcept {
     const std::uint64_t used = pace_.used();
-    if (used > 0) palpate::follow(memory_.pursuit.unit_ns, meter_.elapsed_ns() / used);
+    if (used > 0) palpate::follow(memory_.pursuit.unit_ns, meter_.refined_ns() / used);
   }
 
   void refine() noexcept {
@@ -356,13 +374,15 @@ class Query {
   void narrow_widest(double share_m, bool may_lag) noexcept {
     MinQueue<std::uint32_t, Wider> queue(memory_.queue, Wider{active()});
     double open_m = 0;
-    std::uint64_t felt = 0;
+    felt_ = crossing_ = 0;
     for (std::uint32_t i = 0; i < count_; ++i) {
       open_m += width_m(active()[i]);
-      felt += is_felt(active()[i]) ? 1u : 0u;
+      count_in(active()[i]);
       queue.push(i);
     }
-    meter_.expect_contacts(felt);
+    leave_for_report();
+    at_once_ =
+        memory_.pursuit.searches >= kFewSearches && units_to_close() < kAtOnce * affordable();
     for (std::uint32_t step = 0; !queue.empty() && open_m > demand_.tolerance_m; ++step) {
       const std::uint32_t index = queue.top();
       Active& item = active()[index];
@@ -370,13 +390,42 @@ class Query {
       queue.pop();
       if (item.width <= kClosed) break;
       open_m -= width_m(item);
-      const bool felt_before = is_felt(item);
+      const std::uint64_t known = felt_ + crossing_;
+      count_out(item);
       narrow(item, share_of(item, share_m));
-      if (!felt_before && is_felt(item)) meter_.expect_contacts(++felt);
+      count_in(item);
+      if (felt_ + crossing_ > known) leave_for_report();
       open_m += width_m(item);
       if (truncated_) return;
       queue.push(index);
     }
+  }
+
+  void count_in(const Active& item) noexcept {
+    felt_ += is_felt(item) ? 1u : 0u;
+    crossing_ += is_crossing(item) ? 1u : 0u;
+  }
+  void count_out(const Active& item) noexcept {
+    felt_ -= is_felt(item) ? 1u : 0u;
+    crossing_ -= is_crossing(item) ? 1u : 0u;
+  }
+
+  /// Time for all contacts, and units for the pairs of triangles that cross (report.hpp).
+  void leave_for_report() noexcept {
+    meter_.expect_contacts(tail_contacts(felt_, crossing_));
+    meter_.set_aside(
+        static_cast<std::uint64_t>(static_cast<double>(crossing_) * memory_.pursuit.listing_units));
+  }
+
+  /// About, of all open intervals.
+  double units_to_close() noexcept {
+    double units = 0;
+    for (const Active& item : active()) {
+      if (item.width <= kClosed) continue;
+      const float cost = state_of(item).cost;
+      units += cost > 0 ? static_cast<double>(cost) : memory_.pursuit.search_units;
+    }
+    return units;
   }
 
   /// Searches of all wide intervals that are felt take many times what the tick has left.
@@ -436,7 +485,8 @@ class Query {
       return;
     }
     const bool first = !witness.known();
-    const float step = item.width > kLastStep * delta ? kStep * item.width : 0;
+    const bool in_steps = !at_once_ && item.width > kLastStep * delta;
+    const float step = in_steps ? kStep * item.width : 0;
     close(item, step > share ? step : share, first);
     if (first && witness.known() && !truncated_) climb_from_witness(item);
   }
@@ -533,10 +583,13 @@ class Query {
   Pace pace_;
   std::uint32_t count_ = 0;  // of active regions
   bool truncated_ = false;
-  bool lags_ = false;   // searches do not keep up
-  bool swept_ = false;  // in this tick
-  bool asked_ = false;  // after a jump: whether searches will keep up
+  bool lags_ = false;     // searches do not keep up
+  bool swept_ = false;    // in this tick
+  bool at_once_ = false;  // intervals are closed, not in steps
+  bool asked_ = false;    // after a jump: whether searches will keep up
   std::uint32_t searches_ = 0;
+  std::uint64_t felt_ = 0;      // of active regions
+  std::uint64_t crossing_ = 0;  // likewise
   QueryResult result_;
 };
 

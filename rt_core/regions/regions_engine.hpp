@@ -27,11 +27,19 @@ namespace palpate::regions {
 /// An interval that is no wider, in units, is closed: rounding leaves as much.
 inline constexpr float kClosed = 2 * kRounding;
 
+/// How many contacts take as long as these, when a query has ended: where surfaces cross, pairs of
+/// triangles are listed and overlaps of pieces measured.
+constexpr std::uint64_t tail_contacts(std::uint64_t contacts, std::uint64_t crossings) noexcept {
+  constexpr std::uint64_t kMore = 24;
+  return contacts + kMore * crossings;
+}
+
 /// A region that may be nearer than delta in this tick.
 struct Active {
   float rest = 0;    ///< at the present poses
   float moved = 0;   ///< since the proof, at most
   float width = 0;   ///< min(witness, delta) - rest: what its force may still change by
+  float doubt = 0;   ///< added to that where it may cross the other body
   float weight = 1;  ///< its part of a tolerance, of which the mean is 1
   std::uint32_t state = 0;
   std::uint32_t region = 0;
@@ -65,6 +73,7 @@ struct QueryMemory {
 /// What a query found.
 struct QueryResult {
   std::uint32_t contacts = 0;     ///< the first ones of QueryMemory::contacts
+  std::uint32_t crossings = 0;    ///< those where surfaces cross
   double min_distance_m = 0;      ///< least over contacts; infinity without contacts
   double unresolved_lower_m = 0;  ///< least lower bound of a region that may be nearer than delta;
                                   ///< infinity where there is none

@@ -182,8 +182,10 @@ class Report {
     const Witness& witness = state_of(item).witness;
     CrossingScratch& scratch = *memory_.crossing;
     scratch.list = {};
-    find_crossings(*memory_.kernels, pair, frame, *memory_.search, pace_, item.region,
-                   scratch.list);
+    const std::uint64_t before = pace_.used();
+    const bool complete = find_crossings(*memory_.kernels, pair, frame, *memory_.search, pace_,
+                                         item.region, scratch.list);
+    memory_.pursuit.learn_listing(static_cast<double>(pace_.used() - before), complete);
     if (scratch.list.count == 0) {
       if (!witness_crosses) return false;
       // Only where the budget or rounding kept the search from finding any: the list shall not
@@ -195,7 +197,9 @@ class Report {
     if (!c.exact) result_.iteration_cap_met = true;
     const std::uint32_t contact = result_.contacts;
     add(item, {c.point_a, c.point_b, c.normal, -c.depth, c.piece_a, c.piece_b});
-    if (result_.contacts > contact) note_ways_out(scratch, contact);
+    if (result_.contacts == contact) return true;
+    ++result_.crossings;
+    note_ways_out(scratch, contact);
     return true;
   }
 

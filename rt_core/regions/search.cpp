@@ -55,13 +55,13 @@ class Search {
   }
 
   /// Looks at everything within the limit, and keeps what crosses.
-  void collect(const levels::PairState& pair, const image::Region& region,
+  bool collect(const levels::PairState& pair, const image::Region& region,
                CrossingList& list) noexcept {
-    if (!pace_.go_on()) return;
+    if (!pace_.go_on()) return false;
     pair_ = &pair;
     crossings_ = &list;
     visit_root(child_name(region.parent, region.slot));
-    static_cast<void>(finish());
+    return finish().complete;
   }
 
  private:
@@ -366,10 +366,10 @@ Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scr
   return Search(kernels, frame, scratch, pace, witness, reach).run(frame.a->regions[region]);
 }
 
-void find_crossings(const Kernels& kernels, const levels::PairState& pair, const PairFrame& frame,
+bool find_crossings(const Kernels& kernels, const levels::PairState& pair, const PairFrame& frame,
                     SearchScratch& scratch, Pace& pace, std::uint32_t region,
                     CrossingList& list) noexcept {
-  Search(kernels, frame, scratch, pace, {}, {kRounding, 0})
+  return Search(kernels, frame, scratch, pace, {}, {kRounding, 0})
       .collect(pair, frame.a->regions[region], list);
 }
 

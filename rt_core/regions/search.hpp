@@ -57,6 +57,11 @@ class Pace {
     next_reading_ = meter_.used() + units;
     time_ended_ = false;
   }
+  /// Once more is to be had.
+  void resume() noexcept {
+    units_ended_ = time_ended_ = false;
+    next_reading_ = 0;
+  }
   /// False from the moment at which the budget is used up.
   [[nodiscard]] bool go_on() noexcept {
     if (units_ended_ || time_ended_) return false;
@@ -119,7 +124,8 @@ Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scr
 
 /// Adds all pairs of triangles that cross in a region, until the budget is used up. Boxes of
 /// crossing triangles overlap, so that none is passed over.
-void find_crossings(const Kernels& kernels, const levels::PairState& pair, const PairFrame& frame,
+/// @return false where the budget ended it
+bool find_crossings(const Kernels& kernels, const levels::PairState& pair, const PairFrame& frame,
                     SearchScratch& scratch, Pace& pace, std::uint32_t region,
                     CrossingList& list) noexcept;
 

@@ -63,7 +63,7 @@ const Case kCases[] = {
     {"regions, 100 units",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      100,
-     0x59cf05873dec58d5},
+     0xe30b4d3e89329067},
     {"regions, tolerance",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .force_tolerance_N = 3},
      kUnlimited,

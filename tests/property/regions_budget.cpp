@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "host_bake/models/models.hpp"
 #include "rt_core/regions/search.hpp"
 #include "tests/support/allocation_trap.hpp"
 #include "tests/support/brute_force.hpp"
@@ -60,6 +61,42 @@ double sum_of_forces(const TickResult& r) {
   double sum = 0;
   for (const Contact& c : r.contacts) sum += kSettings.stiffness_N_per_m * (kDelta - c.distance_m);
   return sum;
+}
+
+/// Jaws ground on each other, pressed so that they cross; ticks of a millisecond, 0.1 m/s.
+Pose ground(int i) {
+  const double phase = 0.1 * i;
+  return {{1e-3 * std::sin(phase), 5e-4 * (1 - std::cos(phase)),
+           -1.5e-4 + 2e-4 * (1 - std::cos(0.3 * phase))},
+          turn({0, 0, 0.01 * std::sin(0.5 * phase)})};
+}
+
+/// What crosses is known by a distance of zero, and then by how deep it is, which takes a search of
+/// its own: a budget that does for nearly all of a tick has to do for both.
+TEST(RegionsBudget, depths_of_what_crosses_are_known_where_the_budget_nearly_does_for_all) {
+  const BakedBody upper(bake::make_model("jaw_upper", 3000), bake::ForEngine::regions);
+  const BakedBody lower(bake::make_model("jaw_lower", 3000), bake::ForEngine::regions);
+  const Settings settings{.engine = EngineKind::regions, .delta_m = 5e-4, .cluster_radius_m = 1e-3};
+  BakedScene exact({upper.view, lower.view}, {{0, 1}}, settings);
+  BakedScene budgeted({upper.view, lower.view}, {{0, 1}}, settings);
+  double squares = 0, peak = 0, units = 0;
+  int crossing = 0, ticks = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Pose poses[2] = {ground(i), {}};
+    const TickResult truth = tick_or_fail(*exact.engine, poses);
+    const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = 1500});
+    if (i < 50) continue;
+    ++ticks;
+    units += static_cast<double>(truth.queries);
+    for (const Contact& c : truth.contacts) crossing += c.distance_m < 0 ? 1 : 0;
+    squares += squared_norm(found.wrench.force_N - truth.wrench.force_N);
+    peak = std::max(peak, norm(truth.wrench.force_N));
+  }
+  RecordProperty("units", std::to_string(units / ticks));
+  RecordProperty("error", std::to_string(std::sqrt(squares / ticks) / peak));
+  EXPECT_GT(crossing, 2 * ticks);
+  EXPECT_GT(units / ticks, 1500);
+  EXPECT_LT(std::sqrt(squares / ticks) / peak, 0.03);
 }
 
 TEST(RegionsBudget, every_budget_gives_a_true_certificate) {

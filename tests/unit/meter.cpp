@@ -60,6 +60,33 @@ TEST(Meter, tail_gets_no_more_than_half) {
   EXPECT_EQ(end_ns(meter, clock), kDeadline_ns / 2);
 }
 
+TEST(Meter, units_set_aside_are_there_for_the_tail_and_no_more_than_half) {
+  Meter meter({.units = 1000}, {});
+  meter.set_aside(100);
+  EXPECT_EQ(meter.queries_left(), 900u);
+  meter.set_aside(5000);
+  EXPECT_EQ(meter.queries_left(), 500u);
+  meter.charge(500);
+  EXPECT_TRUE(meter.out_of_units());
+  meter.begin_tail();
+  EXPECT_EQ(meter.queries_left(), 500u);
+  Meter unlimited({}, {});
+  unlimited.set_aside(100);
+  EXPECT_FALSE(unlimited.limited());
+}
+
+TEST(Meter, tail_has_three_quarters_of_the_time_that_is_left_for_searches) {
+  SetClock clock;
+  Meter meter(clock.budget(), learnt(kDeadline_ns / 4));
+  meter.expect_contacts(100);
+  clock.now_ns = kDeadline_ns / 2;
+  meter.begin_tail();
+  EXPECT_EQ(end_ns(meter, clock), kDeadline_ns * 7 / 8);
+  clock.now_ns = 2 * kDeadline_ns;
+  meter.begin_tail();
+  EXPECT_TRUE(meter.out_of_time());
+}
+
 TEST(Meter, contacts_found_while_a_share_is_held_back_count_after_its_release) {
   SetClock clock;
   Meter meter(clock.budget(), learnt(50'000));
