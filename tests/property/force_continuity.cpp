@@ -18,11 +18,11 @@ constexpr double kPeriod_s = 1e-3;
 constexpr std::uint64_t kUnlimited = Budget{}.units;
 
 const BakedBody& upper() {
-  static const BakedBody b(bake::make_model("jaw_upper", 6000));
+  static const BakedBody b(bake::make_model("jaw_upper", 6000), bake::ForEngine::both);
   return b;
 }
 const BakedBody& lower() {
-  static const BakedBody b(bake::make_model("jaw_lower", 6000));
+  static const BakedBody b(bake::make_model("jaw_lower", 6000), bake::ForEngine::both);
   return b;
 }
 
@@ -83,6 +83,19 @@ TEST_P(GroundJaws, interpolated_force_steps_so_without_steadying_where_no_budget
   for (const double s0 : {0.005, 0.05}) {
     const Steps felt = largest_steps({.s0 = s0}, kUnlimited, GetParam(), false);
     EXPECT_LE(felt.force_N, 1.5 * exact.force_N) << "s0 " << s0;
+  }
+}
+
+TEST_P(GroundJaws, regions_step_so_too_and_without_steadying_where_a_budget_nearly_does) {
+  constexpr EngineKind kRegions = EngineKind::regions;
+  const Steps exact =
+      largest_steps({.engine = kRegions, .exact = true}, kUnlimited, GetParam(), false);
+  const Steps felt = largest_steps({.engine = kRegions}, 2500, GetParam(), false);
+  EXPECT_LE(felt.force_N, 1.5 * exact.force_N);
+  for (const std::uint64_t units : {2500u, 1000u, 500u, 200u}) {
+    const Steps steadied = largest_steps({.engine = kRegions}, units, GetParam(), true);
+    EXPECT_LE(steadied.force_N, 1.5 * exact.force_N) << units << " units";
+    EXPECT_LE(steadied.torque_Nm, 1.5 * exact.torque_Nm) << units << " units";
   }
 }
 

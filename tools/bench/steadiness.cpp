@@ -56,13 +56,12 @@ struct Setting {
 const std::vector<std::uint64_t> kOfLevels = {kUnlimited, 200, 60};
 const std::vector<std::uint64_t> kOfRegions = {2500, 1000, 500, 200};
 
-const Setting kSettings[] = {
-    {"s0 = 0.005", {.s0 = 0.005}, kOfLevels},
-    {"s0 = 0.015", {.s0 = 0.015}, kOfLevels},
-    {"s0 = 0.05", {.s0 = 0.05}, kOfLevels},
-    {"kappa = 0.1", {.s0 = 1e3, .kappa = 0.1}, kOfLevels},
-    {"s0 = 0.05, dives", {.s0 = 0.05, .contact_dive = true}, kOfLevels},
-    {"regions", {.engine = EngineKind::regions}, kOfRegions}};
+const Setting kSettings[] = {{"s0 = 0.005", {.s0 = 0.005}, kOfLevels},
+                             {"s0 = 0.015", {.s0 = 0.015}, kOfLevels},
+                             {"s0 = 0.05", {.s0 = 0.05}, kOfLevels},
+                             {"kappa = 0.1", {.s0 = 1e3, .kappa = 0.1}, kOfLevels},
+                             {"s0 = 0.05, dives", {.s0 = 0.05, .contact_dive = true}, kOfLevels},
+                             {"regions", {.engine = EngineKind::regions}, kOfRegions}};
 
 struct Scene {
   const char* name;
@@ -109,9 +108,8 @@ void print_column(const std::vector<Vec3d>& found, const std::vector<Vec3d>& exa
 
 void measure(const Scene& scene, double speed_m_per_s, const std::vector<Pose>& poses) {
   for (const Setting& setting : kSettings) {
-    const std::vector<Vec3d> exact =
-        forces(scene, poses, {.engine = setting.settings.engine, .exact = true}, kUnlimited,
-               kNotSteadied);
+    const std::vector<Vec3d> exact = forces(
+        scene, poses, {.engine = setting.settings.engine, .exact = true}, kUnlimited, kNotSteadied);
     for (const std::uint64_t units : setting.budgets) {
       const std::string budget = units == kUnlimited ? "none" : std::to_string(units);
       std::printf("%s,%g,\"%s\",%s,%.4f", scene.name, speed_m_per_s, setting.name, budget.c_str(),
