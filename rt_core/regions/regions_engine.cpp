@@ -31,7 +31,7 @@ constexpr float kLastStep = 0.1f;
 /// steps see more of what a tick has no time for, and take half as much again.
 constexpr double kAtOnce = 1.5;
 /// What may cross the other body goes first, as if its interval were wider by so many delta: how
-/// deep it would be is not in it.
+/// deep it would be is not in it. Not after a jump, when nothing is known of anything.
 constexpr float kMayCross = 1;
 /// Done in every tick, however late it is: one that does not get to search at all would find
 /// nothing in the next one either.
@@ -245,7 +245,7 @@ class Query {
     const float upper = upper_of(item);
     item.width = upper > item.rest ? upper - (item.rest > 0 ? item.rest : 0) : 0;
     const bool unknown = is_felt(item) || !state_of(item).witness.known();
-    const bool may_cross = demand_.limited && item.rest <= 0 && unknown;
+    const bool may_cross = demand_.limited && !swept_ && item.rest <= 0 && unknown;
     item.doubt = may_cross ? kMayCross * static_cast<float>(pair_of(item).delta) : 0;
   }
 
