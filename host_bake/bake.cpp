@@ -26,9 +26,9 @@
 namespace palpate::bake {
 namespace {
 
-/// The regions engine asks for pieces of the original surface alone. What is above them makes an
-/// image that the other engine can answer exact queries from as well, with sixteen children a piece
-/// for two: half the bytes.
+/// The regions engine asks for pieces of the original surface alone. With sixteen children a piece
+/// above them, not two, an image has three fifths of the bytes, and the other engine can still
+/// answer exact queries from it.
 constexpr int kWideRounds = 4;
 
 // Runs a stage and adds its seconds to the report.

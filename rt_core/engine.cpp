@@ -93,12 +93,13 @@ Found find_by_levels(Engine& engine, Meter& meter) noexcept {
   if (found.queries > 0) {
     follow(engine.levels.query_ns, meter.refined_ns() / found.queries);
   }
-  return {found.contacts,
-          found.contacts,
-          found.min_distance_m,
-          engine.levels.tree.front().size(),
-          found.queries,
-          certify(found, found.upper_m, engine.settings.delta_m, least_error_m(engine.states))};
+  return {.contacts = found.contacts,
+          .tail_contacts = found.contacts,
+          .min_distance_m = found.min_distance_m,
+          .front_nodes = engine.levels.tree.front().size(),
+          .queries = found.queries,
+          .certificate =
+              certify(found, found.upper_m, engine.settings.delta_m, least_error_m(engine.states))};
 }
 
 Found find_by_regions(Engine& engine, Meter& meter) noexcept {
@@ -110,12 +111,13 @@ Found find_by_regions(Engine& engine, Meter& meter) noexcept {
   }
   const regions::QueryResult found = regions::query(engine.regions, demand, meter);
   engine.tally.lap(Stage::refine, meter);
-  Found out{found.contacts,
-            regions::tail_contacts(found.contacts, found.crossings),
-            found.min_distance_m,
-            found.near_regions,
-            found.queries,
-            certify(found, found.min_distance_m, s.delta_m, least_error_m(engine.states))};
+  Found out{
+      .contacts = found.contacts,
+      .tail_contacts = regions::tail_contacts(found.contacts, found.crossings),
+      .min_distance_m = found.min_distance_m,
+      .front_nodes = found.near_regions,
+      .queries = found.queries,
+      .certificate = certify(found, found.min_distance_m, s.delta_m, least_error_m(engine.states))};
   out.certificate.force_bound_N = s.stiffness_N_per_m * found.open_m;
   return out;
 }

@@ -17,6 +17,7 @@ namespace palpate::bake {
 ///
 /// @param rounds  1 to 12. 1: pairs, and a level each time the pieces have about halved. More make
 /// fewer levels, with up to 2^rounds children a piece; so many or fewer are united to the root
+///
 /// The same result whatever the number of threads. Throws InputRefused where the levels pass
 /// image::kMaxLevels. O(n log n) expected, n = vertices of the hulls over all levels. Stage
 /// "merge".

@@ -116,11 +116,12 @@ class Meter {
   /// Marks the end of refinement: the tail begins. Of what was left for it all units and three
   /// quarters of the time are to be had again; the rest of the time is for what is not searched.
   void begin_tail() noexcept {
+    constexpr std::uint64_t kQuarters = 4;
     stop_units_ = budget_.units;
     if (budget_.clock_ns == nullptr) return;
     tail_start_ns_ = now_ns();
-    const std::uint64_t deadline = budget_.deadline_ns;
-    stop_ns_ = deadline > tail_start_ns_ ? deadline - (deadline - tail_start_ns_) / 4 : deadline;
+    stop_ns_ = budget_.deadline_ns;
+    if (stop_ns_ > tail_start_ns_) stop_ns_ -= (stop_ns_ - tail_start_ns_) / kQuarters;
   }
   /// Since begin_tail(); 0 without a clock.
   [[nodiscard]] std::uint64_t tail_ns() const noexcept {

@@ -32,6 +32,7 @@ struct Pursuit {
   std::uint64_t unit_ns = 0;    ///< time of a work unit; 0: not known
   double listing_units = 32;    ///< what the pairs that cross in a region take to list, of late
 
+  /// @param units     that it took to list the pairs that cross in a region
   /// @param complete  false: it would have taken more
   void learn_listing(double units, bool complete) noexcept {
     constexpr double kFollowed = 0.125;  // within some eight of them
@@ -39,6 +40,7 @@ struct Pursuit {
     const double taken = complete ? units : units + listing_units;
     listing_units += kFollowed * ((taken < kMost ? taken : kMost) - listing_units);
   }
+
   void learn_search(double units) noexcept {
     constexpr std::uint32_t kMostSearches = 16;
     if (searches < kMostSearches) ++searches;

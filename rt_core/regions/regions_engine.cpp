@@ -381,8 +381,8 @@ class Query {
       queue.push(i);
     }
     leave_for_report();
-    at_once_ =
-        memory_.pursuit.searches >= kFewSearches && units_to_close() < kAtOnce * affordable();
+    at_once_ = demand_.limited && memory_.pursuit.searches >= kFewSearches &&
+               units_to_close() < kAtOnce * affordable();
     for (std::uint32_t step = 0; !queue.empty() && open_m > demand_.tolerance_m; ++step) {
       const std::uint32_t index = queue.top();
       Active& item = active()[index];

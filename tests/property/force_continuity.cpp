@@ -8,6 +8,7 @@
 #include "host_bake/models/models.hpp"
 #include "tests/support/baked_scene.hpp"
 #include "tests/support/effort.hpp"
+#include "tests/support/ground.hpp"
 #include "tools/realtime/engine_query.hpp"
 #include "tools/realtime/steady_query.hpp"
 
@@ -24,14 +25,6 @@ const BakedBody& upper() {
 const BakedBody& lower() {
   static const BakedBody b(bake::make_model("jaw_lower", 6000), bake::ForEngine::both);
   return b;
-}
-
-/// Grinds at a speed; the bite opens and closes by 0.2 mm.
-Pose ground(double speed_m_per_s, int tick) {
-  const double phase = speed_m_per_s * kPeriod_s * tick / 0.001;
-  return {{0.001 * std::sin(phase), 0.0005 * (1 - std::cos(phase)),
-           -0.00015 + 0.0002 * (1 - std::cos(0.3 * phase))},
-          turn({0, 0, 0.01 * std::sin(0.5 * phase)})};
 }
 
 struct Steps {

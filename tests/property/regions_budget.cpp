@@ -10,6 +10,7 @@
 #include "rt_core/regions/search.hpp"
 #include "tests/support/allocation_trap.hpp"
 #include "tests/support/brute_force.hpp"
+#include "tests/support/ground.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace palpate::test {
@@ -63,14 +64,6 @@ double sum_of_forces(const TickResult& r) {
   return sum;
 }
 
-/// Jaws ground on each other, pressed so that they cross; ticks of a millisecond, 0.1 m/s.
-Pose ground(int i) {
-  const double phase = 0.1 * i;
-  return {{1e-3 * std::sin(phase), 5e-4 * (1 - std::cos(phase)),
-           -1.5e-4 + 2e-4 * (1 - std::cos(0.3 * phase))},
-          turn({0, 0, 0.01 * std::sin(0.5 * phase)})};
-}
-
 /// What crosses is known by a distance of zero, and then by how deep it is, which takes a search of
 /// its own: a budget that does for nearly all of a tick has to do for both.
 TEST(RegionsBudget, depths_of_what_crosses_are_known_where_the_budget_nearly_does_for_all) {
@@ -82,7 +75,7 @@ TEST(RegionsBudget, depths_of_what_crosses_are_known_where_the_budget_nearly_doe
   double squares = 0, peak = 0, units = 0;
   int crossing = 0, ticks = 0;
   for (int i = 0; i < 300; ++i) {
-    const Pose poses[2] = {ground(i), {}};
+    const Pose poses[2] = {ground(0.1, i), {}};
     const TickResult truth = tick_or_fail(*exact.engine, poses);
     const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = 1500});
     if (i < 50) continue;
