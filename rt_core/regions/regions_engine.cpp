@@ -99,14 +99,10 @@ class Query {
   /// something of everywhere.
   struct Wider {
     std::span<const Active> active;
-    float key(std::uint32_t i) const noexcept {
-      const Active& item = active[i];
-      return item.width > kClosed ? (item.width + item.doubt) / item.weight : 0;
-    }
     static std::uint32_t scattered(std::uint32_t i) noexcept { return i * 0x9e3779b1u; }
     bool operator()(std::uint32_t a, std::uint32_t b) const noexcept {
-      const float of_a = key(a);
-      const float of_b = key(b);
+      const float of_a = active[a].urgency;
+      const float of_b = active[b].urgency;
       return of_a > of_b || (of_a == of_b && scattered(a) < scattered(b));
     }
   };
@@ -246,7 +242,8 @@ class Query {
     item.width = upper > item.rest ? upper - (item.rest > 0 ? item.rest : 0) : 0;
     const bool unknown = is_felt(item) || !state_of(item).witness.known();
     const bool may_cross = demand_.limited && !swept_ && item.rest <= 0 && unknown;
-    item.doubt = may_cross ? kMayCross * static_cast<float>(pair_of(item).delta) : 0;
+    const float doubt = may_cross ? kMayCross * static_cast<float>(pair_of(item).delta) : 0;
+    item.urgency = item.width > kClosed ? (item.width + doubt) / item.weight : 0;
   }
 
   bool crosses(std::uint32_t index) noexcept {
@@ -340,6 +337,7 @@ class Query {
     for (Active& item : active()) {
       const float cost = state_of(item).cost;
       if (cost > 0) item.weight = sqrt_of(cost) * known / sum;
+      widen(item);
     }
   }
 

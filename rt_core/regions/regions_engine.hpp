@@ -36,11 +36,11 @@ constexpr std::uint64_t tail_contacts(std::uint64_t contacts, std::uint64_t cros
 
 /// A region that may be nearer than delta in this tick.
 struct Active {
-  float rest = 0;    ///< at the present poses
-  float moved = 0;   ///< since the proof, at most
-  float width = 0;   ///< min(witness, delta) - rest: what its force may still change by
-  float doubt = 0;   ///< added to that where it may cross the other body
-  float weight = 1;  ///< its part of a tolerance, of which the mean is 1
+  float rest = 0;     ///< at the present poses
+  float moved = 0;    ///< since the proof, at most
+  float width = 0;    ///< min(witness, delta) - rest: what its force may still change by
+  float weight = 1;   ///< its part of a tolerance, of which the mean is 1
+  float urgency = 0;  ///< the larger, the sooner it is looked at
   std::uint32_t state = 0;
   std::uint32_t region = 0;
   std::uint32_t pair = 0;

@@ -41,6 +41,14 @@ inline constexpr int kLanes = 4;
 using Floats = float __attribute__((vector_size(sizeof(float) * kLanes)));
 using Ints = std::int32_t __attribute__((vector_size(sizeof(std::int32_t) * kLanes)));
 
+/// Four floats that lie in a row, on every target with lanes.
+using Four = float __attribute__((vector_size(4 * sizeof(float))));
+
+PALPATE_LANES Four four(const float* from) noexcept {
+  Four v;
+  __builtin_memcpy(&v, from, sizeof v);
+  return v;
+}
 PALPATE_LANES Floats load(const float* from) noexcept {
   Floats v;
   __builtin_memcpy(&v, from, sizeof v);
@@ -51,7 +59,10 @@ PALPATE_LANES Ints load(const std::int32_t* from) noexcept {
   __builtin_memcpy(&v, from, sizeof v);
   return v;
 }
-PALPATE_LANES void store(Floats v, float* to) noexcept { __builtin_memcpy(to, &v, sizeof v); }
+template <class Vector>
+PALPATE_LANES void store(Vector v, float* to) noexcept {
+  __builtin_memcpy(to, &v, sizeof v);
+}
 PALPATE_LANES void store(Ints v, std::int32_t* to) noexcept { __builtin_memcpy(to, &v, sizeof v); }
 PALPATE_LANES Floats all(float v) noexcept { return v - Floats{}; }
 PALPATE_LANES Ints all(std::int32_t v) noexcept { return v - Ints{}; }
