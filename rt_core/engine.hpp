@@ -26,8 +26,8 @@ class Engine {
   regions::QueryMemory regions;
   std::span<Contact> contacts;
   force::Workspace force;
-  [[no_unique_address]] Tally tally;
-  TailTime tail;  // of the ticks so far
+  TailTime tail;                      // of the ticks so far
+  [[no_unique_address]] Tally tally;  // last: its size is a switch of the build
 };
 
 }  // namespace palpate

@@ -62,7 +62,7 @@ struct Layout {
   std::span<regions::RegionState> regions;
   std::span<regions::Active> active;
   std::span<regions::WayOut> ways_out;
-  std::span<float> swept;
+  std::span<float> swept, absence;
   std::span<regions::SearchScratch> search;
   std::span<regions::CrossingScratch> crossing;
 };
@@ -98,6 +98,7 @@ void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
   out.queue = arena.array<std::uint32_t>(all);
   out.ways_out = arena.array<regions::WayOut>(regions::ways_out_for(all));
   out.swept = arena.array<float>(most);
+  out.absence = arena.array<float>(all);
   out.search = arena.array<regions::SearchScratch>(1);
   out.crossing = arena.array<regions::CrossingScratch>(1);
 }
@@ -157,6 +158,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.regions.queue = layout.queue;
   e.regions.ways_out = layout.ways_out;
   e.regions.swept = layout.swept;
+  e.regions.crowd.absence = layout.absence;
   e.regions.search = layout.search.data();
   e.regions.crossing = layout.crossing.data();
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {

@@ -24,6 +24,12 @@ class TailTime {
   [[nodiscard]] std::uint64_t expected_ns(std::uint64_t contacts) const noexcept {
     return contact_ns_ * (contacts + kFixed) * 5 / 4;
   }
+  /// How many contacts a tail of this time does for; infinitely many where nothing is learnt yet.
+  [[nodiscard]] double contacts_in(std::uint64_t tail_ns) const noexcept {
+    if (contact_ns_ == 0) return std::numeric_limits<double>::infinity();
+    return static_cast<double>(tail_ns) / static_cast<double>(contact_ns_) -
+           static_cast<double>(kFixed);
+  }
   void learn(std::uint64_t tail_ns, std::uint64_t contacts) noexcept {
     follow(contact_ns_, tail_ns / (contacts + kFixed));
   }
@@ -52,6 +58,15 @@ class Meter {
     if (contacts <= contacts_) return;
     contacts_ = contacts;
     if (budget_.clock_ns != nullptr) leave_for_tail(contacts);
+  }
+
+  /// How many contacts there is time for in the tail, of which it is left half of the budget; below
+  /// 0 where there is none.
+  [[nodiscard]] double contacts_affordable() const noexcept {
+    if (budget_.clock_ns == nullptr || budget_.deadline_ns == kUnlimited) {
+      return std::numeric_limits<double>::infinity();
+    }
+    return tail_.contacts_in(half_ns());
   }
 
   void charge(std::uint64_t units) noexcept { used_ += units; }
@@ -131,9 +146,12 @@ class Meter {
  private:
   static constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
 
+  [[nodiscard]] std::uint64_t half_ns() const noexcept {
+    return budget_.deadline_ns > start_ns_ ? (budget_.deadline_ns - start_ns_) / 2 : 0;
+  }
+
   void leave_for_tail(std::uint64_t contacts) noexcept {
-    const std::uint64_t half =
-        budget_.deadline_ns > start_ns_ ? (budget_.deadline_ns - start_ns_) / 2 : 0;
+    const std::uint64_t half = half_ns();
     const std::uint64_t tail_ns = tail_.expected_ns(contacts);
     end_ns_ = budget_.deadline_ns - (tail_ns < half ? tail_ns : half);
     if (stop_ns_ > end_ns_) stop_ns_ = end_ns_;

@@ -58,7 +58,8 @@ class Follower {
   const PairFrame& frame_of_item(const Active& item) noexcept { return memory_.frames[item.pair]; }
   RegionState& state_of(const Active& item) noexcept { return memory_.states[item.state]; }
   bool is_open(const Active& item) noexcept {
-    return item.width > kClosed && state_of(item).witness.known();
+    const RegionState& state = state_of(item);
+    return item.width > kClosed && state.witness.known() && memory_.crowd.has(item.state);
   }
 
   float below_delta(const Active& item, float distance) noexcept {

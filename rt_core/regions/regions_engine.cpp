@@ -33,6 +33,8 @@ constexpr double kAtOnce = 1.5;
 /// What may cross the other body goes first, as if its interval were wider by so many delta: how
 /// deep it would be is not in it. Not after a jump, when nothing is known of anything.
 constexpr float kMayCross = 1;
+/// What is not felt, because others beside it are, goes last.
+constexpr float kNotFelt = 1e-3f;
 /// Done in every tick, however late it is: one that does not get to search at all would find
 /// nothing in the next one either.
 constexpr std::uint64_t kLeastUnits = 64;
@@ -76,6 +78,8 @@ class Query {
     for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) gather(i);
     measure_witnesses();
     measure_near_pairs();
+    thin_out_crowd();
+    widen_all();
     for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) settle_side(i);
     refine();
     for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) find_way_out(i);
@@ -189,7 +193,7 @@ class Query {
       batch.add(i, at_last);
     }
     batch.measure_all();
-    for (Active& item : active()) widen(item);
+    widen_all();
   }
 
   /// Those of the near pairs that may be nearer than the witness now. Where the budget ends this,
@@ -213,7 +217,18 @@ class Query {
       }
     }
     batch.measure_all();
-    for (Active& item : active()) widen(item);
+  }
+
+  /// To what the time after the searches does for. After a jump nobody knows yet who is felt.
+  void thin_out_crowd() noexcept {
+    if (!demand_.limited || swept_) {
+      memory_.crowd.gather_all();
+      return;
+    }
+    std::uint64_t crossing = 0;
+    for (const Active& item : active()) crossing += is_crossing(item) ? 1u : 0u;
+    const auto taken = static_cast<double>(tail_contacts(0, crossing));
+    thin_out(memory_, active(), meter_.contacts_affordable() - taken);
   }
 
   void take_if_nearer(std::uint32_t index, const Witness& pair) noexcept {
@@ -244,6 +259,11 @@ class Query {
     const bool may_cross = demand_.limited && !swept_ && item.rest <= 0 && unknown;
     const float doubt = may_cross ? kMayCross * static_cast<float>(pair_of(item).delta) : 0;
     item.urgency = item.width > kClosed ? (item.width + doubt) / item.weight : 0;
+    if (!is_present(item)) item.urgency *= kNotFelt;
+  }
+
+  void widen_all() noexcept {
+    for (Active& item : active()) widen(item);
   }
 
   bool crosses(std::uint32_t index) noexcept {
@@ -302,6 +322,7 @@ class Query {
     const std::uint32_t region = memory_.frames[index].a->region_triangles[witness.a].region;
     const std::uint32_t state = memory_.first_state[index] + region;
     memory_.states[state].witness = witness;
+    memory_.crowd.absence[state] = 0;
     for (const Active& item : active()) {
       if (item.state == state) return;
     }
@@ -364,7 +385,7 @@ class Query {
     const bool better = swept_ || (worthwhile && kFollowWorth * by_follow.gain * by_search.units >
                                                      by_search.gain * by_follow.units);
     follow(memory_, active(), (better ? kMostFollow : kLeastFollow) * units, pace_);
-    for (Active& item : active()) widen(item);
+    widen_all();
   }
 
   /// Until the open intervals are within the tolerance or the budget ends.
@@ -400,11 +421,11 @@ class Query {
   }
 
   void count_in(const Active& item) noexcept {
-    felt_ += is_felt(item) ? 1u : 0u;
+    felt_ += is_felt(item) && is_present(item) ? 1u : 0u;
     crossing_ += is_crossing(item) ? 1u : 0u;
   }
   void count_out(const Active& item) noexcept {
-    felt_ -= is_felt(item) ? 1u : 0u;
+    felt_ -= is_felt(item) && is_present(item) ? 1u : 0u;
     crossing_ -= is_crossing(item) ? 1u : 0u;
   }
 
@@ -419,7 +440,7 @@ class Query {
   double units_to_close() noexcept {
     double units = 0;
     for (const Active& item : active()) {
-      if (item.width <= kClosed) continue;
+      if (item.width <= kClosed || !is_present(item)) continue;
       const float cost = state_of(item).cost;
       units += cost > 0 ? static_cast<double>(cost) : memory_.pursuit.search_units;
     }
@@ -446,10 +467,12 @@ class Query {
     std::uint32_t wide = 0;
     for (const Active& item : active()) {
       const float most = kWide * static_cast<float>(pair_of(item).delta);
-      wide += is_felt(item) && item.width > most ? 1u : 0u;
+      wide += is_felt(item) && is_present(item) && item.width > most ? 1u : 0u;
     }
     return wide * memory_.pursuit.search_units;
   }
+
+  bool is_present(const Active& item) noexcept { return memory_.crowd.has(item.state); }
 
   /// Work units that the tick has left, about.
   double affordable() const noexcept { return meter_.queries_affordable(memory_.pursuit.unit_ns); }
@@ -507,6 +530,13 @@ class Query {
     const double below_delta = pair.delta - static_cast<double>(upper_of(item));
     const double above = below_delta < pair.deviation ? below_delta : pair.deviation;
     return (pair.deviation + above) * pair.unit_m;
+  }
+
+  /// How much of what is known of its depth is not felt.
+  double not_felt_m(const Active& item) noexcept {
+    const PairState& pair = pair_of(item);
+    const double depth = pair.delta - static_cast<double>(upper_of(item));
+    return (1 - static_cast<double>(memory_.crowd.presence(item.state))) * depth * pair.unit_m;
   }
 
   /// Searches a region until its interval is at most tolerance wide.
@@ -569,7 +599,7 @@ class Query {
       if (lower < pair.delta && lower_m < result_.unresolved_lower_m) {
         result_.unresolved_lower_m = lower_m;
       }
-      result_.open_m += width_m(item) + left_out_m(item);
+      result_.open_m += width_m(item) + left_out_m(item) + not_felt_m(item);
       const double size = static_cast<double>(pair.image_a->regions[item.region].radius);
       if (item.width > kClosed && size > result_.s_worst) result_.s_worst = size;
     }

@@ -15,6 +15,7 @@
 #include "rt_core/palpate_rt.hpp"
 #include "rt_core/regions/containment.hpp"
 #include "rt_core/regions/crossing.hpp"
+#include "rt_core/regions/crowd.hpp"
 #include "rt_core/regions/kernels.hpp"
 #include "rt_core/regions/pursuit.hpp"
 #include "rt_core/regions/region_state.hpp"
@@ -68,6 +69,7 @@ struct QueryMemory {
   SearchScratch* search = nullptr;
   CrossingScratch* crossing = nullptr;
   Pursuit pursuit;  ///< from tick to tick
+  Crowd crowd;      ///< likewise
 };
 
 /// What a query found.

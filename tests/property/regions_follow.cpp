@@ -128,6 +128,50 @@ TEST(RegionsFollow, force_is_near_the_exact_one_at_a_fortieth_of_its_work) {
   EXPECT_LT(error_N, 0.2 * peak_N);  // searches alone: 0.56
 }
 
+/// An engine on which the tail of a tick takes a microsecond for each contact.
+TickResult tick_with_slow_tail(BakedScene& s, int tick, std::uint64_t contacts_in_time) {
+  constexpr std::uint64_t kContact_ns = 1000;
+  constexpr std::uint64_t kUnits = 100'000;  // more than an exact tick takes
+  const std::uint64_t tail_ns = kContact_ns * (contacts_in_time + 4);
+  s.engine->tail = {};
+  for (int i = 0; i < 50; ++i) s.engine->tail.learn(kContact_ns * 104, 100);
+  const auto stopped = [](void*) -> std::uint64_t { return 0; };
+  return tick_at(s, tick, {.units = kUnits, .clock_ns = stopped, .deadline_ns = 2 * tail_ns});
+}
+
+/// Hundreds of contacts of two surfaces that fit take longer to report than a small budget is.
+TEST(RegionsFollow, a_part_of_the_contacts_tells_the_force_where_there_is_no_time_for_all) {
+  constexpr std::uint64_t kInTime = 80;
+  BakedScene exact = scene();
+  BakedScene thinned = scene();
+  Vec3d last[2] = {};
+  double peak_N = 0, squares = 0, step_N = 0, exact_step_N = 0;
+  for (int i = 0; i < 3 * kTicks; ++i) {
+    const TickResult truth = tick_at(exact, i);
+    const TickResult r = tick_with_slow_tail(thinned, i, kInTime);
+    const double missing_N = settings().stiffness_N_per_m * exact.engine->states[0].unit_m *
+                             (sum(depths(exact, truth)) - sum(depths(thinned, r)));
+    EXPECT_LE(missing_N, r.certificate.force_bound_N * (1 + 1e-6) + 0.05);
+    const Vec3d now[2] = {truth.wrench.force_N, r.wrench.force_N};
+    if (i >= kTicks) {
+      EXPECT_GT(truth.contacts.size(), 2 * kInTime);
+      EXPECT_LE(static_cast<double>(r.contacts.size()), 1.5 * kInTime);
+      peak_N = std::max(peak_N, norm(now[0]));
+      squares += squared_norm(now[1] - now[0]) / (2 * kTicks);
+      exact_step_N = std::max(exact_step_N, norm(now[0] - last[0]));
+      step_N = std::max(step_N, norm(now[1] - last[1]));
+    }
+    std::copy_n(now, 2, last);
+  }
+  RecordProperty("error", std::to_string(std::sqrt(squares) / peak_N));
+  RecordProperty("step", std::to_string(step_N / exact_step_N));
+  EXPECT_LT(std::sqrt(squares), 0.1 * peak_N);
+  EXPECT_LT(step_N, 2 * exact_step_N);
+  const TickResult truth = tick_at(exact, 3 * kTicks);
+  const TickResult all = tick_at(thinned, 3 * kTicks);  // no budget, no sample
+  EXPECT_EQ(all.contacts.size(), truth.contacts.size());
+}
+
 TEST(RegionsFollow, a_copy_goes_on_with_the_same_bits) {
   BakedScene one = scene();
   for (int i = 0; i < kTicks; ++i) tick_at(one, i, {.units = 1000});

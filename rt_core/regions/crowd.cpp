@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/crowd.hpp"
+
+#include "rt_core/regions/regions_engine.hpp"
+
+namespace palpate::regions {
+namespace {
+
+/// A tick's change of a presence.
+constexpr float kFade = 1.0f / 16;
+/// Fewer stay where they are more than what there is time for by a quarter, and more where two
+/// sixteenths more would not be too many: time is never quite the same.
+constexpr double kMostOver = 1.25;
+constexpr std::uint32_t kSlack = 2;
+/// In which order siblings stay: whoever is left is far from the others (van der Corput 1935).
+constexpr std::uint32_t kOrder[Crowd::kAll] = {0, 8, 4, 12, 2, 10, 6, 14,
+                                               1, 9, 5, 13, 3, 11, 7, 15};
+
+class Thinning {
+ public:
+  Thinning(QueryMemory& memory, std::span<const Active> active) noexcept
+      : memory_(memory), active_(active) {}
+
+  /// @return how many stay, without those that cross
+  std::uint32_t run() noexcept {
+    std::uint32_t stay = 0;
+    for (std::size_t i = 0; i < active_.size();) {
+      const std::size_t end = siblings_end(i);
+      stay += thin_out_siblings(active_.subspan(i, end - i));
+      i = end;
+    }
+    return stay;
+  }
+
+  /// After run(): whether all active regions are felt wholly.
+  [[nodiscard]] bool whole() const noexcept { return whole_; }
+
+ private:
+  RegionState& state_of(const Active& item) noexcept { return memory_.states[item.state]; }
+  const image::Region& region_of(const Active& item) noexcept {
+    return memory_.pairs[item.pair].image_a->regions[item.region];
+  }
+
+  std::size_t siblings_end(std::size_t first) noexcept {
+    const Active& head = active_[first];
+    std::size_t end = first + 1;
+    while (end < active_.size() && active_[end].pair == head.pair &&
+           region_of(active_[end]).parent == region_of(head).parent) {
+      ++end;
+    }
+    return end;
+  }
+
+  bool stays(const Active& item) noexcept {
+    return kOrder[region_of(item).slot] < memory_.crowd.share;
+  }
+
+  std::uint32_t thin_out_siblings(std::span<const Active> siblings) noexcept {
+    bool alone = true;  // the first that is felt, and none that stays
+    for (const Active& item : siblings) {
+      if (is_apart(item) && stays(item)) alone = false;
+    }
+    std::uint32_t stay = 0;
+    for (const Active& item : siblings) {
+      float& absence = memory_.crowd.absence[item.state];
+      if (is_apart(item)) {
+        const bool here = alone || stays(item);
+        alone = false;
+        absence = moved(absence, here ? -kFade : kFade);
+        stay += here ? 1u : 0u;
+      } else {
+        absence = is_crossing(item) ? moved(absence, -kFade) : 0;
+      }
+      whole_ = whole_ && absence == 0;
+    }
+    return stay;
+  }
+
+  /// Felt, and does not cross.
+  bool is_apart(const Active& item) noexcept {
+    const Witness& witness = state_of(item).witness;
+    const auto delta = static_cast<float>(memory_.pairs[item.pair].delta);
+    return witness.known() && witness.distance < delta && witness.distance > 0;
+  }
+  bool is_crossing(const Active& item) noexcept {
+    const Witness& witness = state_of(item).witness;
+    return witness.known() && witness.distance <= 0;
+  }
+
+  static float moved(float from, float by) noexcept {
+    const float to = from + by;
+    return to < 0 ? 0 : to < 1 ? to : 1;
+  }
+
+  QueryMemory& memory_;
+  std::span<const Active> active_;
+  bool whole_ = true;
+};
+
+}  // namespace
+
+void thin_out(QueryMemory& memory, std::span<const Active> active, double most) noexcept {
+  Crowd& crowd = memory.crowd;
+  if (!crowd.thinned && static_cast<double>(active.size()) <= most) return;
+  Thinning thinning(memory, active);
+  const double stay = thinning.run();
+  std::uint32_t& share = crowd.share;
+  if (share > 1 && stay > kMostOver * most) --share;
+  if (share < Crowd::kAll && stay * (share + kSlack) <= most * share) ++share;
+  crowd.thinned = true;
+  if (share == Crowd::kAll && thinning.whole()) crowd.gather_all();
+}
+
+}  // namespace palpate::regions

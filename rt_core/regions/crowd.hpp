@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which regions are followed and felt where more are near than a tick has time for.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+#include "rt_core/image/region_format.hpp"
+
+namespace palpate::regions {
+
+struct Active;
+struct QueryMemory;
+
+/// Who is felt, from tick to tick.
+struct Crowd {
+  static constexpr std::uint32_t kAll = image::kRegionWidth;
+
+  std::uint32_t share = kAll;  ///< of sixteen regions beside each other so many are, at least one
+  bool thinned = false;        ///< not all are, or not wholly
+  std::span<float> absence;    ///< [states] how much of each is not: 0 to 1
+
+  [[nodiscard]] float presence(std::uint32_t state) const noexcept { return 1 - absence[state]; }
+  [[nodiscard]] bool has(std::uint32_t state) const noexcept { return absence[state] < 1; }
+
+  /// All are felt, at once.
+  void gather_all() noexcept {
+    if (!thinned) return;
+    std::fill(absence.begin(), absence.end(), 0.0f);
+    share = kAll;
+    thinned = false;
+  }
+};
+
+/// Thins out the regions that are felt where they are more than `most`, evenly over the surface:
+/// what is left tells much the same force, for that is felt once in each direction however many
+/// tell it (force/penalty.hpp), and each gets more of the tick's work. Of the children of one node
+/// at least one stays, so that no place is lost, and all that cross the other body.
+///
+/// Who stays or goes does so by a sixteenth a tick, so that forces come and go smoothly. What is
+/// not felt yet is wholly there.
+/// @param most  regions, those that cross not counted; infinity: all there are
+/// O(active)
+void thin_out(QueryMemory& memory, std::span<const Active> active, double most) noexcept;
+
+}  // namespace palpate::regions

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Regions that are felt, more of them than there is time for: who stays, and how the others go.
+#include "rt_core/regions/crowd.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "rt_core/regions/regions_engine.hpp"
+
+namespace palpate::test {
+namespace {
+
+using regions::Crowd;
+
+constexpr std::uint32_t kWidth = image::kRegionWidth;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kLong = 64;  // ticks: longer than shares and presences take
+
+/// Regions of full nodes, all felt, at half of delta.
+struct Surface {
+  explicit Surface(std::uint32_t nodes)
+      : regions(kWidth * nodes), states(kWidth * nodes), absence(kWidth * nodes) {
+    for (std::uint32_t i = 0; i < regions.size(); ++i) {
+      regions[i].parent = i / kWidth;
+      regions[i].slot = i % kWidth;
+      states[i].witness = {i, i, 0.5f};
+      active.push_back({.state = i, .region = i, .pair = 0});
+    }
+    view.regions = regions;
+    pair.image_a = &view;
+    pair.delta = 1;
+    memory.pairs = {&pair, 1};
+    memory.states = states;
+    memory.crowd.absence = absence;
+  }
+
+  void thin_out(double most, int ticks = kLong) {
+    for (int i = 0; i < ticks; ++i) regions::thin_out(memory, active, most);
+  }
+  std::size_t felt() const {
+    return static_cast<std::size_t>(
+        std::count_if(absence.begin(), absence.end(), [](float a) { return a < 1; }));
+  }
+
+  std::vector<image::Region> regions;
+  std::vector<regions::RegionState> states;
+  std::vector<float> absence;
+  std::vector<regions::Active> active;
+  ImageView view;
+  levels::PairState pair;
+  regions::QueryMemory memory;
+};
+
+TEST(RegionsCrowd, all_are_felt_where_there_is_time_for_all) {
+  Surface s(4);
+  for (const double most : {kInfinity, 64.0, 52.0}) {  // a quarter more is let pass
+    s.thin_out(most);
+    for (const float absence : s.absence) EXPECT_EQ(absence, 0);
+  }
+}
+
+TEST(RegionsCrowd, no_more_are_felt_than_there_is_time_for_by_a_quarter) {
+  for (const double most : {40.0, 20.0, 9.0}) {
+    Surface s(4);
+    s.thin_out(most);
+    EXPECT_LE(static_cast<double>(s.felt()), 1.25 * most);
+    EXPECT_GE(static_cast<double>(s.felt()), 0.5 * most);
+  }
+}
+
+TEST(RegionsCrowd, who_stays_is_spread_evenly) {
+  Surface s(4);
+  s.thin_out(16);
+  for (std::uint32_t i = 0; i < s.states.size(); i += 8) {
+    const auto here = std::count_if(s.absence.begin() + i, s.absence.begin() + i + 8,
+                                    [](float absence) { return absence < 1; });
+    EXPECT_GE(here, 1) << i;
+    EXPECT_LE(here, 3) << i;
+  }
+}
+
+TEST(RegionsCrowd, of_every_node_one_stays_whichever_is_felt) {
+  for (std::uint32_t alone = 0; alone < kWidth; ++alone) {
+    Surface s(2);
+    for (std::uint32_t i = 0; i < kWidth; ++i) {
+      if (i != alone) s.states[i].witness.distance = 2;  // not felt
+    }
+    s.thin_out(0);
+    EXPECT_EQ(s.absence[alone], 0) << alone;
+    EXPECT_EQ(s.felt(), kWidth + 1) << alone;  // what is not felt is there when it comes near
+  }
+}
+
+TEST(RegionsCrowd, what_crosses_stays_and_does_not_count) {
+  Surface s(4);
+  for (std::uint32_t i = 0; i < s.states.size(); i += 2) s.states[i].witness.distance = 0;
+  s.thin_out(32);
+  EXPECT_EQ(s.felt(), s.states.size());
+  s.thin_out(-1);
+  EXPECT_EQ(s.felt(), s.states.size() / 2 + 4);
+}
+
+TEST(RegionsCrowd, who_goes_or_comes_does_so_within_sixteen_ticks_or_more) {
+  Surface s(4);
+  for (int i = 0; i < 2 * kLong; ++i) {
+    const std::vector<float> before = s.absence;
+    s.thin_out(i < kLong ? 10 : kInfinity, 1);
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      EXPECT_LE(std::abs(s.absence[k] - before[k]), 1.0f / 16);
+    }
+  }
+  for (const float absence : s.absence) EXPECT_EQ(absence, 0);
+  EXPECT_EQ(s.memory.crowd.share, Crowd::kAll);
+}
+
+TEST(RegionsCrowd, time_that_wavers_changes_nobody) {
+  Surface s(16);
+  s.thin_out(100);
+  const std::uint32_t share = s.memory.crowd.share;
+  for (int i = 0; i < kLong; ++i) {
+    s.thin_out(i % 2 == 0 ? 92 : 108, 1);
+    EXPECT_EQ(s.memory.crowd.share, share);
+  }
+}
+
+TEST(RegionsCrowd, all_are_gathered_at_once) {
+  Surface s(4);
+  s.thin_out(10);
+  s.memory.crowd.gather_all();
+  EXPECT_EQ(s.memory.crowd.share, Crowd::kAll);
+  for (const float absence : s.absence) EXPECT_EQ(absence, 0);
+}
+
+}  // namespace
+}  // namespace palpate::test
