@@ -33,6 +33,8 @@ constexpr double kAtOnce = 1.5;
 /// What may cross the other body goes first, as if its interval were wider by so many delta: how
 /// deep it would be is not in it. Not after a jump, when nothing is known of anything.
 constexpr float kMayCross = 1;
+/// So few regions are not thinned out: a force would miss any of them.
+constexpr double kFewestFelt = 32;
 /// What is not felt, because others beside it are, goes last.
 constexpr float kNotFelt = 1e-3f;
 /// Done in every tick, however late it is: one that does not get to search at all would find
@@ -219,7 +221,8 @@ class Query {
     batch.measure_all();
   }
 
-  /// To what the time after the searches does for. After a jump nobody knows yet who is felt.
+  /// To what the time after the searches does for, of which what crosses takes half at most. After
+  /// a jump nobody knows yet who is felt.
   void thin_out_crowd() noexcept {
     if (!demand_.limited || swept_) {
       memory_.crowd.gather_all();
@@ -227,8 +230,10 @@ class Query {
     }
     std::uint64_t crossing = 0;
     for (const Active& item : active()) crossing += is_crossing(item) ? 1u : 0u;
+    const double all = meter_.contacts_affordable();
     const auto taken = static_cast<double>(tail_contacts(0, crossing));
-    thin_out(memory_, active(), meter_.contacts_affordable() - taken);
+    const double most = taken < 0.5 * all ? all - taken : 0.5 * all;
+    thin_out(memory_, active(), most > kFewestFelt ? most : kFewestFelt);
   }
 
   void take_if_nearer(std::uint32_t index, const Witness& pair) noexcept {
