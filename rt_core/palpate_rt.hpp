@@ -138,8 +138,9 @@ struct Contact {
   Vec3d normal{};
   double distance_m = 0;  ///< of the points; signed: negative where the pieces overlap
   /// 0 to 1: so much of its depth below delta is felt. Less than all in the regions engine only: on
-  /// the border of a region beside which the surface goes on nearer, and of an overlap that others
-  /// of the same pieces lead out of sooner.
+  /// the border of a region beside which the surface goes on nearer; of an overlap that others of
+  /// the same pieces lead out of sooner; and of what comes or goes where a budget of time does not
+  /// do for reporting all contacts (regions/crowd.hpp).
   double share = 1;
   /// Its force on the tool is weight * stiffness * (delta - distance) along the normal.
   double weight = 0;
@@ -157,8 +158,8 @@ struct Certificate {
       0;  ///< largest weighted surface deviation left unrefined, relative to the radius
   /// Regions engine: the sizes of the regions' penalty forces, summed, are within this of the true
   /// ones: stiffness times the sum of all open intervals below delta, each wider by what was left
-  /// out of both bodies before baking, of which no tolerance takes account. Depths of overlap and
-  /// shares (Contact::share) are not covered.
+  /// out of both bodies before baking, of which no tolerance takes account. What there was no time
+  /// to report is covered; depths of overlap, and what else has a Contact::share, are not.
   double force_bound_N = 0;
   std::uint64_t units_used = 0;
   bool truncated_by_time = false;    ///< the clock ended refinement

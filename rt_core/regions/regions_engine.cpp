@@ -95,7 +95,7 @@ class Query {
     result_.queries = pace_.used();
     result_.near_regions = count_;
     result_.truncated_by_units |= pace_.units_ended();
-    result_.truncated_by_time |= pace_.time_ended();
+    result_.truncated_by_time |= pace_.time_ended() || memory_.crowd.thinned;
     return result_;
   }
 
@@ -224,13 +224,13 @@ class Query {
   /// To what the time after the searches does for, of which what crosses takes half at most. After
   /// a jump nobody knows yet who is felt.
   void thin_out_crowd() noexcept {
-    if (!demand_.limited || swept_) {
+    const double all = meter_.contacts_affordable();
+    if (all == std::numeric_limits<double>::infinity() || swept_) {
       memory_.crowd.gather_all();
       return;
     }
     std::uint64_t crossing = 0;
     for (const Active& item : active()) crossing += is_crossing(item) ? 1u : 0u;
-    const double all = meter_.contacts_affordable();
     const auto taken = static_cast<double>(tail_contacts(0, crossing));
     const double most = taken < 0.5 * all ? all - taken : 0.5 * all;
     thin_out(memory_, active(), most > kFewestFelt ? most : kFewestFelt);

@@ -108,7 +108,8 @@ struct Demand {
 /// neighbours. A tolerance is shared so that what costs more to search may stay open wider. A
 /// budget that is far too small for the searches goes to following the witnesses instead where that
 /// brings them nearer (follow.hpp), and after a jump. Whatever ends it, every interval holds its
-/// distance, and every witness nearer than delta is a contact. Where triangles cross, the pieces
+/// distance, and every witness nearer than delta is a contact, or as many of them as there is time
+/// to report (crowd.hpp). Where triangles cross, the pieces
 /// that they belong to give the depth and the curve in which they do the direction (crossing.hpp);
 /// for that, at most half of a budget is left.
 ///

@@ -156,6 +156,7 @@ TEST(RegionsFollow, a_part_of_the_contacts_tells_the_force_where_there_is_no_tim
     if (i >= kTicks) {
       EXPECT_GT(truth.contacts.size(), 2 * kInTime);
       EXPECT_LE(static_cast<double>(r.contacts.size()), 1.5 * kInTime);
+      EXPECT_TRUE(r.certificate.truncated_by_time);
       peak_N = std::max(peak_N, norm(now[0]));
       squares += squared_norm(now[1] - now[0]) / (2 * kTicks);
       exact_step_N = std::max(exact_step_N, norm(now[0] - last[0]));
