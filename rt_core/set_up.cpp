@@ -46,7 +46,7 @@ struct Layout {
   std::span<Contact> contacts;
   std::span<force::Felt> felt;
   std::span<force::Ranked> ranking;
-  std::span<force::DeepSides> sides;
+  std::span<force::DeepCells> cells;
   std::span<force::Place> copies, places;
   // Levels engine.
   std::span<levels::Node> nodes;
@@ -111,7 +111,7 @@ Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKin
   out.contacts = arena.array<Contact>(limits.contacts);
   out.felt = arena.array<force::Felt>(limits.contacts);
   out.ranking = arena.array<force::Ranked>(limits.contacts);
-  out.sides = arena.array<force::DeepSides>(1);
+  out.cells = arena.array<force::DeepCells>(1);
   // Contacts that are nobody's copies have corners of their own.
   out.copies = arena.array<force::Place>(force::Spot::kCorners * limits.contacts);
   out.places = arena.array<force::Place>(limits.clusters);
@@ -138,7 +138,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.contacts = layout.contacts;
   e.force.felt = layout.felt;
   e.force.ranking = layout.ranking;
-  e.force.sides = layout.sides.data();
+  e.force.cells = layout.cells.data();
   e.force.copies.attach(layout.copies);
   e.force.places.attach(layout.places);
   e.levels.pairs = e.regions.pairs = layout.states;

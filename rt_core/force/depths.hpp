@@ -20,7 +20,7 @@ struct Felt {
   double mass = 0;     ///< see penalty.hpp
   Spot spot;           ///< where it brought that
   std::uint32_t contact = 0;
-  std::uint32_t side = 0;  ///< of a box, that the direction is nearest to
+  std::uint32_t cell = 0;  ///< of directions, see Depths
 };
 
 /// A contact waiting to be put in order.
@@ -44,46 +44,67 @@ struct DeepLanes {
   double depth_m[kLanes];  ///< 0 beyond the last contact
 };
 
-/// Scratch: the deepest contacts of each side of a box, by depth.
-struct DeepSides {
-  static constexpr std::uint32_t kSides = 6;
-  /// Looks at contacts of one side, at most: the deepest ones. More are needed only where very many
-  /// contacts push in directions that differ by more than 30 degrees within a side; contacts of one
+/// Scratch: contacts by cells of directions. Of a cell the deepest are laid side by side and the
+/// others wait.
+struct DeepCells {
+  /// Quarters of the faces of a cube: which coordinate is the largest, and the signs of all.
+  static constexpr std::uint32_t kCells = 24;
+  /// Looks at contacts of one cell, at most: the deepest ones. More are needed only where very many
+  /// contacts push in directions that differ by more than 30 degrees within a cell; contacts of one
   /// direction that follow one another in depth, as those of a flat face, count as the deepest.
-  static constexpr std::uint32_t kMostLooks = 64;
+  static constexpr std::uint32_t kMostLooks = 32;
+  /// Tangents to how much a cell's contacts may have in common with a direction.
+  static constexpr std::uint32_t kTangents = 2;
 
-  DeepLanes lanes[kSides][kMostLooks / DeepLanes::kLanes];
-};
-
-/// Contacts in the order of depth, apart for the six sides of a box that their directions are
-/// nearest to, so that the largest of depth times kinship is found after a few looks.
-class Depths {
- public:
-  /// @param felt     outlives this
-  /// @param ranking  scratch, [felt], outlives this
-  /// @param sides    scratch, outlives this
-  /// O(n)
-  Depths(std::span<Felt> felt, std::span<Ranked> ranking, DeepSides& sides) noexcept;
-
-  /// Largest depth_m * kinship over the contacts within 90 degrees of f's direction, f itself
-  /// included. Continuous in all of them. Puts contacts in order as far as it looks. O(1), at most
-  /// 6 kMostLooks looks, and O(n log n) for all contacts together
-  [[nodiscard]] double around(const Felt& f) noexcept;
-
- private:
-  /// Contacts of one side: the deepest are laid side by side, the others wait.
-  struct Side {
+  struct Cell {
     MinQueue<Ranked, Deeper> waiting{{}};
     std::uint32_t count = 0;  ///< laid
     Vec3d last{};             ///< direction of the last one laid
   };
+  Cell cells[kCells];  ///< those that are not empty, from the first on
+  DeepLanes lanes[kCells][kMostLooks / DeepLanes::kLanes];
 
-  [[nodiscard]] double around(const Felt& f, std::uint32_t side, double most_m) noexcept;
-  void lay(Side& of, DeepLanes& to) noexcept;
+  // Cells side by side.
+  float axis[3][kCells];  ///< about which all directions of the cell are
+  float slope[kTangents][kCells];
+  float rise[kTangents][kCells];
+  float depth_m[kCells];  ///< the largest; 0 beyond the last cell
+};
+
+/// Contacts in the order of depth, apart for cells of nearly one direction, so that the largest of
+/// depth times kinship is found after a few looks.
+class Depths {
+ public:
+  /// @param felt     outlives this
+  /// @param ranking  scratch, [felt], outlives this
+  /// @param cells    scratch, outlives this
+  /// O(n)
+  Depths(std::span<Felt> felt, std::span<Ranked> ranking, DeepCells& cells) noexcept;
+
+  /// Largest depth_m * kinship over the contacts within 90 degrees of f's direction, f itself
+  /// included. Continuous in all of them. Puts contacts in order as far as it looks. O(1), at most
+  /// kCells kMostLooks looks, and O(n log n) for all contacts together
+  [[nodiscard]] double around(const Felt& f) noexcept;
+
+ private:
+  /// Directions of one cell.
+  struct Cone {
+    Vec3d axis{};
+    double cosine = 1;  ///< of the angle between the axis and the farthest of them
+    std::uint32_t count = 0;
+    std::uint32_t end = 0;   ///< in ranking
+    std::uint32_t cell = 0;  ///< in DeepCells
+  };
+
+  std::array<Cone, DeepCells::kCells> sort(std::span<Felt> felt,
+                                           std::span<Ranked> ranking) noexcept;
+  void bound(const Cone& cone) noexcept;
+  [[nodiscard]] double look_at(std::uint32_t cell, Vec3d direction, double most_m) noexcept;
+  void lay(DeepCells::Cell& of, DeepLanes& to) noexcept;
 
   std::span<const Felt> felt_;
-  DeepSides& sides_;
-  std::array<Side, DeepSides::kSides> of_side_;
+  DeepCells& cells_;
+  std::uint32_t count_ = 0;  ///< of cells that are not empty
 };
 
 }  // namespace palpate::force

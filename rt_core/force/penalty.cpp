@@ -67,7 +67,7 @@ Penalty penalty(std::span<Contact> contacts, std::span<const BodyPair> pairs, st
   weigh(felt, tool_pose, settings, workspace);
   Directions directions;
   for (const Felt& f : felt) directions.add(f.direction, f.mass);
-  Depths depths(felt, workspace.ranking, *workspace.sides);
+  Depths depths(felt, workspace.ranking, *workspace.cells);
 
   Penalty out;
   double all_N = 0;

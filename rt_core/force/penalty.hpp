@@ -15,7 +15,7 @@ namespace palpate::force {
 struct Workspace {
   std::span<Felt> felt;        ///< [contacts]
   std::span<Ranked> ranking;   ///< [contacts]
-  DeepSides* sides = nullptr;  ///< [1]
+  DeepCells* cells = nullptr;  ///< [1]
   Places copies;               ///< shares a contact among its copies
   Places places;               ///< shares what is felt among contacts within cluster_radius_m
 };

@@ -35,8 +35,8 @@ Penalty feel(std::vector<Contact>& contacts, const Settings& settings = kSetting
   std::vector<Felt> felt(contacts.size());
   std::vector<Ranked> ranking(contacts.size());
   std::vector<Place> copies(places), table(places);
-  const auto sides = std::make_unique<DeepSides>();
-  Workspace workspace{felt, ranking, sides.get(), Places(copies), Places(table)};
+  const auto cells = std::make_unique<DeepCells>();
+  Workspace workspace{felt, ranking, cells.get(), Places(copies), Places(table)};
   return penalty(contacts, kPairs, 0, pose, settings, workspace);
 }
 
@@ -146,6 +146,23 @@ TEST(Penalty, matches_its_definition) {
     EXPECT_NEAR(norm(p.wrench.force_N - expected.force_N), 0, 1e-9);
     EXPECT_NEAR(norm(p.wrench.torque_Nm - expected.torque_Nm), 0, 1e-11);
   }
+}
+
+/// A ball in a shell, pressed to one side.
+TEST(Penalty, matches_its_definition_with_hundreds_of_contacts_all_around) {
+  constexpr int kContacts = 450;
+  constexpr double kGolden = 2.39996322972865332;  // radians
+  std::vector<Contact> c;
+  for (int i = 0; i < kContacts; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kContacts;
+    const double r = std::sqrt(1 - z * z);
+    const Vec3d n{r * std::cos(kGolden * i), r * std::sin(kGolden * i), z};
+    const double deep = 0.5 + 0.4 * dot(n, {0.6, 0.48, 0.64});
+    c.push_back(at(-0.035 * n, n, (1 - deep) * kSettings.delta_m));
+  }
+  const Wrench expected = by_definition(c, kSettings);
+  const Penalty p = feel(c);
+  EXPECT_NEAR(norm(p.wrench.force_N - expected.force_N), 0, 1e-4 * norm(expected.force_N));
 }
 
 TEST(Penalty, weights_add_up_to_the_wrench) {
