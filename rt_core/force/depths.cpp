@@ -32,6 +32,14 @@ Vector load(const Real* from) noexcept {
   return v;
 }
 
+using Mask = decltype(Four{} > Four{});
+
+bool any(Mask mask) noexcept {
+  std::uint64_t halves[kTwo];
+  __builtin_memcpy(halves, &mask, sizeof mask);
+  return (halves[0] | halves[1]) != 0;
+}
+
 double magnitude(double v) noexcept { return v < 0 ? -v : v; }
 
 std::uint32_t quarter_of(Vec3d n) noexcept {
@@ -135,6 +143,7 @@ double Depths::around(const Felt& f) noexcept {
   const Vec3f n = vec_cast<float>(f.direction);
   for (std::uint32_t first = 0; first < count_; first += kFour) {
     const Four bound_m = most_of(cells_, first, n);
+    if (!any(bound_m > static_cast<float>(most_m))) continue;
     for (std::uint32_t k = 0; k < kFour; ++k) {
       if (static_cast<double>(bound_m[k]) <= most_m || first + k == f.cell) continue;
       most_m = look_at(first + k, f.direction, most_m);
