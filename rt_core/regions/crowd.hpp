@@ -2,7 +2,6 @@
 // Which regions are followed and felt where more are near than a tick has time for.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -27,7 +26,7 @@ struct Crowd {
   /// All are felt, at once.
   void gather_all() noexcept {
     if (!thinned) return;
-    std::fill(absence.begin(), absence.end(), 0.0f);
+    for (float& a : absence) a = 0;
     share = kAll;
     thinned = false;
   }

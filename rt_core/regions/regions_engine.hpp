@@ -109,9 +109,9 @@ struct Demand {
 /// budget that is far too small for the searches goes to following the witnesses instead where that
 /// brings them nearer (follow.hpp), and after a jump. Whatever ends it, every interval holds its
 /// distance, and every witness nearer than delta is a contact, or as many of them as there is time
-/// to report (crowd.hpp). Where triangles cross, the pieces
-/// that they belong to give the depth and the curve in which they do the direction (crossing.hpp);
-/// for that, at most half of a budget is left.
+/// to report (crowd.hpp). Where triangles cross, the pieces that they belong to give the depth and
+/// the curve in which they do the direction (crossing.hpp); for that, at most half of a budget is
+/// left.
 ///
 /// A contact's pieces are those of level 0 that hold the witnesses. Cost: the budget, plus
 /// O(regions), plus one witness of each near region.

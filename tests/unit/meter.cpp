@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace palpate {
 namespace {
 
@@ -58,6 +60,18 @@ TEST(Meter, tail_gets_no_more_than_half) {
   Meter meter(clock.budget(), learnt(kDeadline_ns));
   meter.expect_contacts(1'000'000);
   EXPECT_EQ(end_ns(meter, clock), kDeadline_ns / 2);
+}
+
+TEST(Meter, contacts_that_there_is_time_for_take_half_of_the_budget) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  SetClock clock;
+  const Meter meter(clock.budget(), learnt(kDeadline_ns));
+  EXPECT_NEAR(meter.contacts_affordable(), 48, 1);  // and four as the tail's own
+  clock.now_ns = 2 * kDeadline_ns;
+  const Meter late(clock.budget(), learnt(kDeadline_ns));
+  EXPECT_LT(late.contacts_affordable(), 0);
+  EXPECT_EQ(Meter(clock.budget(), {}).contacts_affordable(), kInfinity);
+  EXPECT_EQ(Meter({.units = 1}, learnt(kDeadline_ns)).contacts_affordable(), kInfinity);
 }
 
 TEST(Meter, units_set_aside_are_there_for_the_tail_and_no_more_than_half) {
