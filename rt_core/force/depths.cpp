@@ -77,35 +77,30 @@ Four most_of(const DeepCells& cells, std::uint32_t first, Vec3f n) noexcept {
          load<Four>(cells.depth_m + first);
 }
 
-}  // namespace
-
-Depths::Depths(std::span<Felt> felt, std::span<Ranked> ranking, DeepCells& cells) noexcept
-    : felt_(felt), cells_(cells) {
-  for (float& depth : cells_.depth_m) depth = 0;
-  for (const Cone& cone : sort(felt, ranking)) {
-    if (cone.count == 0) continue;
-    DeepCells::Cell& cell = cells_.cells[cone.cell];
-    cell = {};
-    cell.waiting = MinQueue<Ranked, Deeper>(ranking.subspan(cone.end - cone.count, cone.count));
-    cell.waiting.fill();
-    bound(cone);
-  }
-}
+/// Directions of one cell.
+struct Cone {
+  Vec3d axis{};
+  double cosine = 1;  // of the angle between the axis and the farthest of them
+  std::uint32_t count = 0;
+  std::uint32_t end = 0;   // in ranking
+  std::uint32_t cell = 0;  // in DeepCells
+};
 
 /// Contacts of each cell one after the other.
-std::array<Depths::Cone, DeepCells::kCells> Depths::sort(std::span<Felt> felt,
-                                                         std::span<Ranked> ranking) noexcept {
-  std::array<Cone, DeepCells::kCells> cones{};
+/// @return how many cells are not empty
+std::uint32_t sort(std::span<Felt> felt, std::span<Ranked> ranking,
+                   Cone (&cones)[DeepCells::kCells]) noexcept {
   for (Felt& f : felt) {
     f.cell = quarter_of(f.direction);
     cones[f.cell].axis += f.direction;
     ++cones[f.cell].count;
   }
+  std::uint32_t cells = 0;
   std::uint32_t first = 0;
   for (Cone& cone : cones) {
     if (cone.count == 0) continue;
     cone.axis = (1 / norm(cone.axis)) * cone.axis;
-    cone.cell = count_++;
+    cone.cell = cells++;
     cone.end = first;
     first += cone.count;
   }
@@ -116,25 +111,42 @@ std::array<Depths::Cone, DeepCells::kCells> Depths::sort(std::span<Felt> felt,
     ranking[cone.end++] = {felt[i].depth_m, i};
     felt[i].cell = cone.cell;
   }
-  return cones;
+  return cells;
 }
 
 /// A direction at an angle t from the axis is no nearer to any of a cell than t less the rim's
 /// angle r. The cosine of that is a concave function of cos t: no tangent is anywhere below it.
-void Depths::bound(const Cone& cone) noexcept {
+void bound(const Cone& cone, DeepCells& cells) noexcept {
   const std::uint32_t i = cone.cell;
-  cells_.axis[0][i] = static_cast<float>(cone.axis.x);
-  cells_.axis[1][i] = static_cast<float>(cone.axis.y);
-  cells_.axis[2][i] = static_cast<float>(cone.axis.z);
-  cells_.depth_m[i] = static_cast<float>(cells_.cells[i].waiting.top().depth_m);
+  cells.axis[0][i] = static_cast<float>(cone.axis.x);
+  cells.axis[1][i] = static_cast<float>(cone.axis.y);
+  cells.axis[2][i] = static_cast<float>(cone.axis.z);
+  cells.depth_m[i] = static_cast<float>(cells.cells[i].waiting.top().depth_m);
   const double sine2 = 1 - cone.cosine * cone.cosine;
   const double sine = sqrt_of(sine2 > 0 ? sine2 : 0);
   for (std::uint32_t k = 0; k < DeepCells::kTangents; ++k) {
     const Angle& behind = kTouch[k];
     const double at = cone.cosine * behind.cosine - sine * behind.sine;
     const double slope = behind.sine / (sine * behind.cosine + cone.cosine * behind.sine);
-    cells_.slope[k][i] = static_cast<float>(slope);
-    cells_.rise[k][i] = static_cast<float>(behind.cosine - at * slope);
+    cells.slope[k][i] = static_cast<float>(slope);
+    cells.rise[k][i] = static_cast<float>(behind.cosine - at * slope);
+  }
+}
+
+}  // namespace
+
+Depths::Depths(std::span<Felt> felt, std::span<Ranked> ranking, DeepCells& cells) noexcept
+    : felt_(felt), cells_(cells) {
+  Cone cones[DeepCells::kCells];
+  count_ = sort(felt, ranking, cones);
+  for (float& depth : cells_.depth_m) depth = 0;
+  for (const Cone& cone : cones) {
+    if (cone.count == 0) continue;
+    DeepCells::Cell& cell = cells_.cells[cone.cell];
+    cell = {};
+    cell.waiting = MinQueue<Ranked, Deeper>(ranking.subspan(cone.end - cone.count, cone.count));
+    cell.waiting.fill();
+    bound(cone, cells_);
   }
 }
 

@@ -2,7 +2,6 @@
 // The largest depth felt in nearly a direction, over all contacts.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
@@ -64,7 +63,8 @@ struct DeepCells {
   Cell cells[kCells];  ///< those that are not empty, from the first on
   DeepLanes lanes[kCells][kMostLooks / DeepLanes::kLanes];
 
-  // Cells side by side.
+  // Cells side by side. A direction whose cosine to the axis is c has one of no more than
+  // min(1, rise + slope c) to any contact of the cell.
   float axis[3][kCells];  ///< about which all directions of the cell are
   float slope[kTangents][kCells];
   float rise[kTangents][kCells];
@@ -87,18 +87,6 @@ class Depths {
   [[nodiscard]] double around(const Felt& f) noexcept;
 
  private:
-  /// Directions of one cell.
-  struct Cone {
-    Vec3d axis{};
-    double cosine = 1;  ///< of the angle between the axis and the farthest of them
-    std::uint32_t count = 0;
-    std::uint32_t end = 0;   ///< in ranking
-    std::uint32_t cell = 0;  ///< in DeepCells
-  };
-
-  std::array<Cone, DeepCells::kCells> sort(std::span<Felt> felt,
-                                           std::span<Ranked> ranking) noexcept;
-  void bound(const Cone& cone) noexcept;
   [[nodiscard]] double look_at(std::uint32_t cell, Vec3d direction, double most_m) noexcept;
   void lay(DeepCells::Cell& of, DeepLanes& to) noexcept;
 

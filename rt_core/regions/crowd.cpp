@@ -36,7 +36,9 @@ class Thinning {
   [[nodiscard]] bool whole() const noexcept { return whole_; }
 
  private:
-  RegionState& state_of(const Active& item) noexcept { return memory_.states[item.state]; }
+  const Witness& witness_of(const Active& item) noexcept {
+    return memory_.states[item.state].witness;
+  }
   const image::Region& region_of(const Active& item) noexcept {
     return memory_.pairs[item.pair].image_a->regions[item.region];
   }
@@ -69,7 +71,7 @@ class Thinning {
         absence = moved(absence, here ? -kFade : kFade);
         stay += here ? 1u : 0u;
       } else {
-        absence = is_crossing(item) ? moved(absence, -kFade) : 0;
+        absence = witness_of(item).crosses() ? moved(absence, -kFade) : 0;
       }
       whole_ = whole_ && absence == 0;
     }
@@ -78,13 +80,9 @@ class Thinning {
 
   /// Felt, and does not cross.
   bool is_apart(const Active& item) noexcept {
-    const Witness& witness = state_of(item).witness;
+    const Witness& witness = witness_of(item);
     const auto delta = static_cast<float>(memory_.pairs[item.pair].delta);
-    return witness.known() && witness.distance < delta && witness.distance > 0;
-  }
-  bool is_crossing(const Active& item) noexcept {
-    const Witness& witness = state_of(item).witness;
-    return witness.known() && witness.distance <= 0;
+    return witness.nearer_than(delta) && !witness.crosses();
   }
 
   static float moved(float from, float by) noexcept {
@@ -105,8 +103,11 @@ void thin_out(QueryMemory& memory, std::span<const Active> active, double most) 
   Thinning thinning(memory, active);
   const double stay = thinning.run();
   std::uint32_t& share = crowd.share;
-  if (share > 1 && stay > kMostOver * most) --share;
-  if (share < Crowd::kAll && stay * (share + kSlack) <= most * share) ++share;
+  if (share > 1 && stay > kMostOver * most) {
+    --share;
+  } else if (share < Crowd::kAll && stay * (share + kSlack) <= most * share) {
+    ++share;
+  }
   crowd.thinned = true;
   if (share == Crowd::kAll && thinning.whole()) crowd.gather_all();
 }

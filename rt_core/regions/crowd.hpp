@@ -20,7 +20,9 @@ struct Crowd {
   bool thinned = false;        ///< not all are, or not wholly
   std::span<float> absence;    ///< [states] how much of each is not: 0 to 1
 
-  [[nodiscard]] float presence(std::uint32_t state) const noexcept { return 1 - absence[state]; }
+  [[nodiscard]] double presence(std::uint32_t state) const noexcept {
+    return 1 - static_cast<double>(absence[state]);
+  }
   [[nodiscard]] bool has(std::uint32_t state) const noexcept { return absence[state] < 1; }
 
   /// All are felt, at once.

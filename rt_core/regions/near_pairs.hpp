@@ -17,6 +17,8 @@ struct Witness {
   std::uint32_t b = image::kNone;
   float distance = 0;  ///< in units; meaningless without triangles
   [[nodiscard]] bool known() const noexcept { return a != image::kNone; }
+  [[nodiscard]] bool nearer_than(float limit) const noexcept { return known() && distance < limit; }
+  [[nodiscard]] bool crosses() const noexcept { return known() && distance <= 0; }
   [[nodiscard]] bool same_pair(const Witness& w) const noexcept { return a == w.a && b == w.b; }
 };
 

@@ -195,7 +195,6 @@ class Query {
       batch.add(i, at_last);
     }
     batch.measure_all();
-    widen_all();
   }
 
   /// Those of the near pairs that may be nearer than the witness now. Where the budget ends this,
@@ -245,13 +244,10 @@ class Query {
   float upper_of(const Active& item) noexcept {
     const Witness& witness = state_of(item).witness;
     const auto delta = static_cast<float>(pair_of(item).delta);
-    return witness.known() && witness.distance < delta ? witness.distance : delta;
+    return witness.nearer_than(delta) ? witness.distance : delta;
   }
 
-  bool is_crossing(const Active& item) noexcept {
-    const Witness& witness = state_of(item).witness;
-    return witness.known() && witness.distance <= 0;
-  }
+  bool is_crossing(const Active& item) noexcept { return state_of(item).witness.crosses(); }
 
   bool is_felt(const Active& item) noexcept {
     return upper_of(item) < static_cast<float>(pair_of(item).delta);
@@ -541,7 +537,7 @@ class Query {
   double not_felt_m(const Active& item) noexcept {
     const PairState& pair = pair_of(item);
     const double depth = pair.delta - static_cast<double>(upper_of(item));
-    return (1 - static_cast<double>(memory_.crowd.presence(item.state))) * depth * pair.unit_m;
+    return static_cast<double>(memory_.crowd.absence[item.state]) * depth * pair.unit_m;
   }
 
   /// Searches a region until its interval is at most tolerance wide.

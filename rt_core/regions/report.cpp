@@ -28,9 +28,8 @@ class Report {
     for (std::uint32_t i = 0; i < active_.size(); ++i) {
       const Active& item = active_[i];
       const Witness& witness = state_of(item).witness;
-      const bool near = witness.distance < static_cast<float>(pair_of(item).delta);
-      const bool felt = near && memory_.crowd.has(item.state);
-      if (witness.known() && (felt || is_way_out(item))) {
+      const bool near = witness.nearer_than(static_cast<float>(pair_of(item).delta));
+      if ((near && memory_.crowd.has(item.state)) || is_way_out(item)) {
         batch[pending++] = i;
       }
       if (pending == kBatch || (i + 1 == active_.size() && pending > 0)) {
@@ -240,7 +239,7 @@ class Report {
     out.centre_m = 0.5 * (out.point_a_m + out.point_b_m);
     out.normal = pair.rotation_a * found.normal;
     out.distance_m = found.distance * pair.unit_m;
-    out.share = found.share * static_cast<double>(memory_.crowd.presence(item.state));
+    out.share = found.share * memory_.crowd.presence(item.state);
     out.weight = 0;
     out.pair = item.pair;
     out.piece_a = found.piece_a;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -104,7 +105,7 @@ TEST(RegionsCrowd, what_crosses_stays_and_does_not_count) {
   EXPECT_EQ(s.felt(), s.states.size() / 2 + 4);
 }
 
-TEST(RegionsCrowd, who_goes_or_comes_does_so_within_sixteen_ticks_or_more) {
+TEST(RegionsCrowd, nobody_goes_or_comes_in_less_than_sixteen_ticks) {
   Surface s(4);
   for (int i = 0; i < 2 * kLong; ++i) {
     const std::vector<float> before = s.absence;
