@@ -9,13 +9,13 @@
 
 namespace palpate {
 
-/// Parts of a tick, in their order. The regions engine has all of its query in `refine`.
+/// Parts of a tick, in their order.
 enum class Stage : std::uint8_t {
-  start,        ///< last tick's front, and what of it is near
-  refine,       ///< queries and splits
-  interpolate,  ///< between levels
-  upkeep,       ///< raising the front, tightening the certificate
-  settle,       ///< contacts and bounds of what is not resolved
+  start,        ///< last tick's front or witnesses, and what of them is near
+  refine,       ///< queries and splits, or searches of regions
+  interpolate,  ///< between levels (levels engine)
+  upkeep,       ///< raising the front, tightening the certificate (levels engine)
+  settle,       ///< contacts and bounds of what is not resolved; all contacts of the regions engine
   force,        ///< contacts into a wrench
 };
 inline constexpr std::uint32_t kStages = 6;
@@ -31,6 +31,11 @@ struct Counters {
   std::uint64_t iterations = 0;       ///< support pairs found by own and culling queries
   std::uint64_t warm_queries = 0;     ///< own and culling: answered by one support pair
   std::uint64_t splits = 0;
+  // Regions engine.
+  std::uint64_t near_regions = 0;  ///< that may have been nearer than delta
+  std::uint64_t searches = 0;      ///< of whole regions, completed
+  std::uint64_t sweeps = 0;        ///< ticks after a jump: one pass over both trees
+  std::uint64_t follows = 0;       ///< ticks whose witnesses were followed
   // High-water marks of the pools.
   std::uint32_t most_nodes = 0;     ///< of Limits::nodes
   std::uint32_t most_waiting = 0;   ///< of Limits::nodes

@@ -109,8 +109,7 @@ Found find_by_regions(Engine& engine, Meter& meter) noexcept {
   if (!s.exact && s.stiffness_N_per_m > 0) {
     demand.tolerance_m = s.force_tolerance_N / s.stiffness_N_per_m;
   }
-  const regions::QueryResult found = regions::query(engine.regions, demand, meter);
-  engine.tally.lap(Stage::refine, meter);
+  const regions::QueryResult found = regions::query(engine.regions, demand, meter, engine.tally);
   Found out{
       .contacts = found.contacts,
       .tail_contacts = regions::tail_contacts(found.contacts, found.crossings),
@@ -154,8 +153,9 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
   out.certificate = found.certificate;
   out.certificate.units_used = meter.used();
   out.certificate.truncated_by_memory |= penalty.places_full;
-  engine.tail.learn(meter.tail_ns(), found.tail_contacts);
-  engine.tally.lap(Stage::force, meter);
+  const std::uint64_t tail_ns = meter.tail_ns();
+  engine.tail.learn(tail_ns, found.tail_contacts);
+  engine.tally.lap(Stage::force, meter.refined_ns() + tail_ns);
   engine.tally.count([&](auto& counters) { raise_mark(counters.most_contacts, found.contacts); });
   return Status::ok;
 }

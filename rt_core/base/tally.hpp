@@ -21,8 +21,9 @@ class CountingTally {
   }
 
   /// Charges the time since the last lap to a stage.
-  void lap(Stage stage, const Meter& meter) noexcept {
-    const std::uint64_t now_ns = meter.elapsed_ns();
+  void lap(Stage stage, const Meter& meter) noexcept { lap(stage, meter.elapsed_ns()); }
+  /// @param now_ns  Meter::elapsed_ns(), where the clock has just been read
+  void lap(Stage stage, std::uint64_t now_ns) noexcept {
     counters_.stage_ns[static_cast<std::uint32_t>(stage)] += now_ns - last_ns_;
     last_ns_ = now_ns;
   }
@@ -46,6 +47,7 @@ class EmptyTally {
  public:
   void begin_tick() noexcept {}
   void lap(Stage, const Meter&) noexcept {}
+  void lap(Stage, std::uint64_t) noexcept {}
   template <class Change>
   void count(const Change&) noexcept {}
   [[nodiscard]] const Counters* counters() const noexcept { return nullptr; }

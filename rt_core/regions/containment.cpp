@@ -3,6 +3,7 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/regions/named_box.hpp"
+#include "rt_core/regions/work.hpp"
 
 namespace palpate::regions {
 namespace {
@@ -130,6 +131,87 @@ Side contained(const Kernels& kernels, const levels::PairState& pair, SearchScra
     return side_of(kernels, *pair.image_a, in_a, scratch, pace);
   }
   return Side::outside;
+}
+
+namespace {
+
+bool crosses(const Work& work, std::uint32_t pair) noexcept {
+  for (const Active& item : work.active()) {
+    if (item.pair == pair && work.is_crossing(item)) return true;
+  }
+  return false;
+}
+
+bool is_near(const Work& work, std::uint32_t pair) noexcept {
+  for (const Active& item : work.active()) {
+    if (item.pair == pair && work.is_felt(item)) return true;
+  }
+  return false;
+}
+
+void settle_side(Work& work, std::uint32_t pair) noexcept {
+  QueryMemory& memory = work.memory;
+  Containment& kept = memory.containment[pair];
+  if (!kept.doubtful || crosses(work, pair)) return;
+  const Side side = contained(*memory.kernels, memory.pairs[pair], *memory.search, work.pace);
+  kept.inside = side == Side::inside;
+  kept.doubtful = side == Side::unknown;
+  kept.nearest = {};
+}
+
+/// Makes a witness known to the report.
+void activate(Work& work, std::uint32_t pair, const Witness& witness) noexcept {
+  QueryMemory& memory = work.memory;
+  const std::uint32_t region = memory.frames[pair].a->region_triangles[witness.a].region;
+  const std::uint32_t state = memory.first_state[pair] + region;
+  memory.states[state].witness = witness;
+  memory.crowd.absence[state] = 0;
+  for (const Active& item : work.active()) {
+    if (item.state == state) return;
+  }
+  const auto rest = static_cast<float>(memory.pairs[pair].delta);
+  memory.active[work.count++] = {.rest = rest, .state = state, .region = region, .pair = pair};
+}
+
+/// The nearest of all pairs of triangles, or of those that the budget does for.
+Witness nearest_of_all(Work& work, std::uint32_t pair, Witness best) noexcept {
+  const Kernels& kernels = *work.memory.kernels;
+  const PairFrame& frame = work.memory.frames[pair];
+  SearchScratch& scratch = *work.memory.search;
+  if (best.known()) {
+    float distances[kBatch];
+    scratch.batch_a[0] = best.a;
+    scratch.batch_b[0] = best.b;
+    measure(kernels, frame, scratch, work.pace, 1, distances);
+    best.distance = distances[0];
+  }
+  for (std::uint32_t i = 0; i < frame.a->regions.size() && work.pace.go_on(); ++i) {
+    const Reach reach{best.known() ? best.distance : kFarthest, 0};
+    const Bounds found = search(kernels, frame, scratch, work.pace, i, {}, reach);
+    if (found.best.known() && found.best.distance < reach.limit) best = found.best;
+  }
+  return best;
+}
+
+void find_way_out(Work& work, std::uint32_t pair) noexcept {
+  Containment& kept = work.memory.containment[pair];
+  if (crosses(work, pair)) {
+    kept.inside = false;
+    kept.doubtful = true;
+  }
+  if (!kept.inside || is_near(work, pair)) return;
+  kept.nearest = nearest_of_all(work, pair, kept.nearest);
+  if (kept.nearest.known()) activate(work, pair, kept.nearest);
+}
+
+}  // namespace
+
+void settle_sides(Work& work) noexcept {
+  for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) settle_side(work, i);
+}
+
+void find_ways_out(Work& work) noexcept {
+  for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) find_way_out(work, i);
 }
 
 }  // namespace palpate::regions

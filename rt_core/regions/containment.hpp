@@ -9,6 +9,8 @@
 
 namespace palpate::regions {
 
+struct Work;
+
 enum class Side : std::uint8_t { unknown, outside, inside };
 
 /// What is kept of a pair from tick to tick.
@@ -33,5 +35,14 @@ struct Containment {
 /// not speak for all of it.
 [[nodiscard]] Side contained(const Kernels& kernels, const levels::PairState& pair,
                              SearchScratch& scratch, Pace& pace) noexcept;
+
+/// Settles for every pair whether one body is inside the other where that is in doubt: unless they
+/// cross, for surfaces that cross have no inside to speak of, and are looked at once they have
+/// parted. Cost: contained(), for each pair in doubt.
+void settle_sides(Work& work) noexcept;
+
+/// Makes the nearest pair of all an active region's witness where one body is inside the other and
+/// no region is near the surface. Cost: what is left of the budget at most.
+void find_ways_out(Work& work) noexcept;
 
 }  // namespace palpate::regions

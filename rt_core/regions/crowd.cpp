@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/crowd.hpp"
 
-#include "rt_core/regions/regions_engine.hpp"
+#include <limits>
+
+#include "rt_core/regions/work.hpp"
 
 namespace palpate::regions {
 namespace {
@@ -12,6 +14,8 @@ constexpr float kFade = 1.0f / 16;
 /// sixteenths more would not be too many: time is never quite the same.
 constexpr double kMostOver = 1.25;
 constexpr std::uint32_t kSlack = 2;
+/// So few regions are not thinned out: a force would miss any of them.
+constexpr double kFewestFelt = 32;
 /// In which order siblings stay: whoever is left is far from the others (van der Corput 1935).
 constexpr std::uint32_t kOrder[Crowd::kAll] = {0, 8, 4, 12, 2, 10, 6, 14,
                                                1, 9, 5, 13, 3, 11, 7, 15};
@@ -110,6 +114,19 @@ void thin_out(QueryMemory& memory, std::span<const Active> active, double most) 
   }
   crowd.thinned = true;
   if (share == Crowd::kAll && thinning.whole()) crowd.gather_all();
+}
+
+void thin_out(Work& work) noexcept {
+  const double all = work.meter.contacts_affordable();
+  if (all == std::numeric_limits<double>::infinity() || work.swept) {
+    work.memory.crowd.gather_all();
+    return;
+  }
+  std::uint64_t crossing = 0;
+  for (const Active& item : work.active()) crossing += work.is_crossing(item) ? 1u : 0u;
+  const auto taken = static_cast<double>(tail_contacts(0, crossing));
+  const double most = taken < 0.5 * all ? all - taken : 0.5 * all;
+  thin_out(work.memory, work.active(), most > kFewestFelt ? most : kFewestFelt);
 }
 
 }  // namespace palpate::regions

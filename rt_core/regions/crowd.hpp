@@ -11,6 +11,7 @@ namespace palpate::regions {
 
 struct Active;
 struct QueryMemory;
+struct Work;
 
 /// Who is felt, from tick to tick.
 struct Crowd {
@@ -44,5 +45,9 @@ struct Crowd {
 /// @param most  regions, those that cross not counted; infinity: all there are
 /// O(active)
 void thin_out(QueryMemory& memory, std::span<const Active> active, double most) noexcept;
+
+/// To what the time after the searches does for, of which what crosses takes half at most; a few
+/// regions are never thinned out. After a jump nobody knows yet who is felt, and all are.
+void thin_out(Work& work) noexcept;
 
 }  // namespace palpate::regions

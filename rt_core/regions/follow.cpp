@@ -21,57 +21,52 @@ constexpr std::uint32_t kStride = 61;
 
 class Follower {
  public:
-  Follower(QueryMemory& memory, std::span<Active> active, double units, Pace& pace) noexcept
-      : memory_(memory), active_(active), pace_(pace), units_(units), start_(pace.used()) {}
+  Follower(Work& work, double units) noexcept
+      : work_(work), units_(units), start_(work.pace.used()) {}
 
   void run() noexcept {
-    Pursuit& pursuit = memory_.pursuit;
+    Pursuit& pursuit = work_.memory.pursuit;
     ++pursuit.round;
-    const auto count = static_cast<std::uint32_t>(active_.size());
-    PairBatch batch(memory_, active_, pace_,
-                    [this](std::uint32_t i, const Witness& pair) { take(i, pair); });
+    const std::uint32_t count = work_.count;
+    PairBatch batch(work_, [this](std::uint32_t i, const Witness& pair) { take(i, pair); });
     for (std::uint32_t k = 0; k < count && within(kSeedsMeasured); ++k) {
       measure_seeds(turn(k), batch);
     }
     batch.measure_all();
-    const std::uint64_t before = pace_.used();
+    const std::uint64_t before = work_.pace.used();
     for (std::uint32_t k = 0; k < count && within(kWitnessesClimbed); ++k) climb_witness(turn(k));
-    const std::uint64_t climbed = pace_.used() - before;
+    const std::uint64_t climbed = work_.pace.used() - before;
     for (std::uint32_t k = 0; k < count && within(kSeedsClimbed); ++k) climb_seed(turn(k));
     for (std::uint32_t k = 0; k < kMostDives * count && within(1); ++k) {
       dive_into(pursuit.next_dive++ % count, batch);
     }
     batch.measure_all();
     // Witnesses climb where regions are searched, too.
-    pursuit.follow.add(gain_, static_cast<double>(pace_.used() - start_ - climbed));
+    pursuit.follow.add(gain_, static_cast<double>(work_.pace.used() - start_ - climbed));
   }
 
  private:
   std::uint32_t turn(std::uint32_t k) const noexcept {
-    return (k + memory_.pursuit.round * kStride) % static_cast<std::uint32_t>(active_.size());
+    return (k + work_.memory.pursuit.round * kStride) % work_.count;
   }
   bool within(double share) noexcept {
-    return static_cast<double>(pace_.used() - start_) < share * units_ && pace_.go_on();
+    return static_cast<double>(work_.pace.used() - start_) < share * units_ && work_.pace.go_on();
   }
 
-  const PairState& pair_of(const Active& item) noexcept { return memory_.pairs[item.pair]; }
-  const PairFrame& frame_of_item(const Active& item) noexcept { return memory_.frames[item.pair]; }
-  RegionState& state_of(const Active& item) noexcept { return memory_.states[item.state]; }
   bool is_open(const Active& item) noexcept {
-    const RegionState& state = state_of(item);
-    return item.width > kClosed && state.witness.known() && memory_.crowd.has(item.state);
+    return item.width > kClosed && work_.witness_of(item).known() && work_.is_present(item);
   }
 
   float below_delta(const Active& item, float distance) noexcept {
-    const auto delta = static_cast<float>(pair_of(item).delta);
+    const float delta = work_.delta_of(item);
     return distance < delta ? distance : delta;
   }
 
   void measure_seeds(std::uint32_t index, auto& batch) noexcept {
-    const Active& item = active_[index];
+    const Active& item = work_.active()[index];
     if (!is_open(item)) return;
-    RegionState& state = state_of(item);
-    const PairState& pair = pair_of(item);
+    RegionState& state = work_.state_of(item);
+    const PairState& pair = work_.pair_of(item);
     Seeds& seeds = state.seeds;
     const auto moved = static_cast<float>((pair.travel - seeds.travel_at) +
                                           (pair.turn - seeds.turn_at) * pair.scale_a);
@@ -87,60 +82,58 @@ class Follower {
 
   /// A measured pair becomes a seed, and the witness where it is nearer.
   void take(std::uint32_t index, const Witness& pair) noexcept {
-    const Active& item = active_[index];
-    const ImageView& a = *frame_of_item(item).a;
-    RegionState& state = state_of(item);
+    const Active& item = work_.active()[index];
+    const ImageView& a = *work_.frame_of(item).a;
+    RegionState& state = work_.state_of(item);
     note_seed(a, state.witness, state.seeds);
     note_seed(a, pair, state.seeds);
     take_if_nearer(item, pair);
   }
 
   void take_if_nearer(const Active& item, const Witness& pair) noexcept {
-    Witness& witness = state_of(item).witness;
+    Witness& witness = work_.witness_of(item);
     if (!(pair.distance < witness.distance)) return;
     const float nearer = below_delta(item, witness.distance) - below_delta(item, pair.distance);
-    gain_ += static_cast<double>(nearer) / pair_of(item).delta;
+    gain_ += static_cast<double>(nearer) / work_.pair_of(item).delta;
     witness = pair;
   }
 
   void climb_witness(std::uint32_t index) noexcept {
-    Active& item = active_[index];
+    Active& item = work_.active()[index];
     if (!is_open(item) || !has_turn(item, kWitnessEvery)) return;
-    RegionState& state = state_of(item);
-    const PairFrame& frame = frame_of_item(item);
-    climb(*memory_.kernels, frame, *memory_.search, pace_, state.witness);
+    RegionState& state = work_.state_of(item);
+    const PairFrame& frame = work_.frame_of(item);
+    climb(*work_.memory.kernels, frame, *work_.memory.search, work_.pace, state.witness);
     note_seed(*frame.a, state.witness, state.seeds);
     item.climbed = true;
   }
 
   void climb_seed(std::uint32_t index) noexcept {
-    const Active& item = active_[index];
-    Seeds& seeds = state_of(item).seeds;
+    const Active& item = work_.active()[index];
+    Seeds& seeds = work_.state_of(item).seeds;
     if (!is_open(item) || seeds.count == 0 || !has_turn(item, kSeedEvery)) return;
-    const PairFrame& frame = frame_of_item(item);
-    const std::uint32_t k = memory_.pursuit.round / kSeedEvery % seeds.count;
+    const PairFrame& frame = work_.frame_of(item);
+    const std::uint32_t k = work_.memory.pursuit.round / kSeedEvery % seeds.count;
     Witness seed = seeds.at[k];
     seed.distance = kFarthest;  // until it is measured
-    climb(*memory_.kernels, frame, *memory_.search, pace_, seed);
+    climb(*work_.memory.kernels, frame, *work_.memory.search, work_.pace, seed);
     move_seed(*frame.a, k, seed, seeds);
     take_if_nearer(item, seed);
   }
 
   bool has_turn(const Active& item, std::uint32_t every) const noexcept {
-    return (item.region + memory_.pursuit.round) % every == 0;
+    return (item.region + work_.memory.pursuit.round) % every == 0;
   }
 
   void dive_into(std::uint32_t index, auto& batch) noexcept {
-    const Active& item = active_[index];
+    const Active& item = work_.active()[index];
     if (!is_open(item)) return;
-    const Witness found = dive(*memory_.kernels, frame_of_item(item), pace_, item.region,
-                               state_of(item).seeds.dives++);
+    const Witness found = dive(*work_.memory.kernels, work_.frame_of(item), work_.pace, item.region,
+                               work_.state_of(item).seeds.dives++);
     batch.add(index, found);
   }
 
-  QueryMemory& memory_;
-  std::span<Active> active_;
-  Pace& pace_;
+  Work& work_;
   double units_;
   std::uint64_t start_;
   double gain_ = 0;
@@ -148,8 +141,8 @@ class Follower {
 
 }  // namespace
 
-void follow(QueryMemory& memory, std::span<Active> active, double units, Pace& pace) noexcept {
-  if (!active.empty()) Follower(memory, active, units, pace).run();
+void follow(Work& work, double units) noexcept {
+  if (work.count > 0) Follower(work, units).run();
 }
 
 }  // namespace palpate::regions

@@ -2,9 +2,7 @@
 // Witnesses of regions that cannot all be searched, kept near without searches.
 #pragma once
 
-#include <span>
-
-#include "rt_core/regions/regions_engine.hpp"
+#include "rt_core/regions/work.hpp"
 
 namespace palpate::regions {
 
@@ -17,6 +15,6 @@ namespace palpate::regions {
 /// Proves nothing and leaves all bounds alone; witnesses are at the present poses as before. The
 /// widths of the regions are the caller's to renew.
 /// @param units  work units to be used, about
-void follow(QueryMemory& memory, std::span<Active> active, double units, Pace& pace) noexcept;
+void follow(Work& work, double units) noexcept;
 
 }  // namespace palpate::regions

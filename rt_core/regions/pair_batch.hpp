@@ -2,25 +2,25 @@
 // Pairs of triangles of active regions, measured sixteen at a time.
 #pragma once
 
-#include "rt_core/regions/regions_engine.hpp"
+#include "rt_core/regions/work.hpp"
 
 namespace palpate::regions {
 
 /// Holds pairs, not places where they are kept: what is done with one that has been measured may
-/// move others. While it is not empty, nothing else may use the batch of memory.search.
+/// move others. While it is not empty, nothing else may use the batch of work.memory.search.
 template <class Take>
 class PairBatch {
  public:
   /// @param take  called as take(index, pair) for each pair that is measured, in the order in which
   /// they were added, its distance at the present poses
-  PairBatch(QueryMemory& memory, std::span<const Active> active, Pace& pace, Take take) noexcept
-      : memory_(memory), active_(active), pace_(pace), take_(take) {}
+  PairBatch(Work& work, Take take) noexcept : work_(work), take_(take) {}
 
   /// @param index  of the active region that the pair is of
   void add(std::uint32_t index, const Witness& pair) noexcept {
-    SearchScratch& scratch = *memory_.search;
+    SearchScratch& scratch = *work_.memory.search;
+    const std::span<const Active> active = work_.active();
     const bool of_others =
-        count_ > 0 && active_[scratch.batch_of[0]].pair != active_[index].pair;  // other bodies
+        count_ > 0 && active[scratch.batch_of[0]].pair != active[index].pair;  // other bodies
     if (count_ == kBatch || of_others) measure_all();
     scratch.batch_of[count_] = index;
     scratch.batch_a[count_] = pair.a;
@@ -32,9 +32,9 @@ class PairBatch {
   void measure_all() noexcept {
     if (count_ == 0) return;
     float distances[kBatch];
-    SearchScratch& scratch = *memory_.search;
-    const PairFrame& frame = memory_.frames[active_[scratch.batch_of[0]].pair];
-    measure(*memory_.kernels, frame, scratch, pace_, count_, distances);
+    SearchScratch& scratch = *work_.memory.search;
+    const PairFrame& frame = work_.frame_of(work_.active()[scratch.batch_of[0]]);
+    measure(*work_.memory.kernels, frame, scratch, work_.pace, count_, distances);
     for (std::uint32_t i = 0; i < count_; ++i) {
       take_(scratch.batch_of[i], Witness{scratch.batch_a[i], scratch.batch_b[i], distances[i]});
     }
@@ -42,9 +42,7 @@ class PairBatch {
   }
 
  private:
-  QueryMemory& memory_;
-  std::span<const Active> active_;
-  Pace& pace_;
+  Work& work_;
   Take take_;
   std::uint32_t count_ = 0;
 };

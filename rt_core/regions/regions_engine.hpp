@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <span>
 
-#include "rt_core/base/meter.hpp"
+#include "rt_core/base/tally.hpp"
 #include "rt_core/convex/penetration.hpp"
 #include "rt_core/levels/body_pair.hpp"
 #include "rt_core/palpate_rt.hpp"
@@ -115,6 +115,6 @@ struct Demand {
 ///
 /// A contact's pieces are those of level 0 that hold the witnesses. Cost: the budget, plus
 /// O(regions), plus one witness of each near region.
-QueryResult query(QueryMemory& memory, const Demand& demand, Meter& meter) noexcept;
+QueryResult query(QueryMemory& memory, const Demand& demand, Meter& meter, Tally& tally) noexcept;
 
 }  // namespace palpate::regions

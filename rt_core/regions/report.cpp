@@ -17,9 +17,8 @@ constexpr double kTouching = static_cast<double>(kRounding);
 
 class Report {
  public:
-  Report(QueryMemory& memory, std::span<const Active> active, Pace& pace,
-         QueryResult& result) noexcept
-      : memory_(memory), active_(active), pace_(pace), result_(result) {}
+  explicit Report(Work& work) noexcept
+      : work_(work), memory_(work.memory), active_(work.active()), result_(work.result) {}
 
   /// Witnesses nearer than delta become contacts, sixteen at a time.
   void run() noexcept {
@@ -27,9 +26,7 @@ class Report {
     std::uint32_t pending = 0;
     for (std::uint32_t i = 0; i < active_.size(); ++i) {
       const Active& item = active_[i];
-      const Witness& witness = state_of(item).witness;
-      const bool near = witness.nearer_than(static_cast<float>(pair_of(item).delta));
-      if ((near && memory_.crowd.has(item.state)) || is_way_out(item)) {
+      if ((work_.is_felt(item) && work_.is_present(item)) || is_way_out(item)) {
         batch[pending++] = i;
       }
       if (pending == kBatch || (i + 1 == active_.size() && pending > 0)) {
@@ -41,12 +38,10 @@ class Report {
   }
 
  private:
-  const PairState& pair_of(const Active& item) noexcept { return memory_.pairs[item.pair]; }
   bool is_way_out(const Active& item) noexcept {
     const Containment& kept = memory_.containment[item.pair];
-    return kept.inside && kept.nearest.known() && kept.nearest.same_pair(state_of(item).witness);
+    return kept.inside && kept.nearest.known() && kept.nearest.same_pair(work_.witness_of(item));
   }
-  const RegionState& state_of(const Active& item) noexcept { return memory_.states[item.state]; }
 
   void report_batch(const std::uint32_t (&batch)[kBatch], std::uint32_t count) noexcept {
     Vec3d origin[kBatch];
@@ -74,8 +69,8 @@ class Report {
   /// The witness's triangles in the coordinates of a, relative to a corner that is returned: in
   /// double up to there, so that only the size of the pair is rounded.
   Vec3d place(const Active& item, std::uint32_t i, TriangleLanes& lanes) noexcept {
-    const PairState& pair = pair_of(item);
-    const Witness& witness = state_of(item).witness;
+    const PairState& pair = work_.pair_of(item);
+    const Witness& witness = work_.witness_of(item);
     const RegionTriangle& a = pair.image_a->region_triangles[witness.a];
     const RegionTriangle& b = pair.image_b->region_triangles[witness.b];
     const Vec3d origin = corner(a, 0, pair.scale_a);
@@ -95,8 +90,8 @@ class Report {
   }
 
   void report_apart(const Active& item, Vec3d on_a, Vec3d apart) noexcept {
-    const PairState& pair = pair_of(item);
-    const Witness& witness = state_of(item).witness;
+    const PairState& pair = work_.pair_of(item);
+    const Witness& witness = work_.witness_of(item);
     const double distance = norm(apart);
     // Touching, the outward normal of b's is right whichever side a comes from.
     const Vec3d normal = distance > kTouching ? (1 / distance) * apart : facing(pair, witness.b);
@@ -119,10 +114,10 @@ class Report {
     constexpr double kSquare = 0.5;    // where none is met so squarely, blades meet
     constexpr double kLeast = 1e-3;    // of the mean: less is rounding, on a blade's edge
     constexpr double kMostOpen = 0.1;  // of delta
-    const PairState& pair = pair_of(item);
+    const PairState& pair = work_.pair_of(item);
     if (static_cast<double>(item.width) > kMostOpen * pair.delta) return false;
     const ImageView& b = *pair.image_b;
-    const std::uint32_t face = state_of(item).witness.b;
+    const std::uint32_t face = work_.witness_of(item).b;
     double least = dot(normal, facing(pair, face));
     if (least > kSquare) return false;
     const Feature at = feature_at(b.region_triangles[face], in_image_of_b(pair, on_b));
@@ -161,8 +156,8 @@ class Report {
   Felt at_border(const Active& item, Vec3d on_a, Vec3d on_b, Vec3d normal) noexcept {
     constexpr double kAll = 0.1;  // sines of the lean
     constexpr double kNone = 0.5;
-    const PairState& pair = pair_of(item);
-    const Witness& witness = state_of(item).witness;
+    const PairState& pair = work_.pair_of(item);
+    const Witness& witness = work_.witness_of(item);
     const Place a{*pair.image_a, witness.a, (1 / pair.scale_a) * on_a};
     const Fall fall = fall_across(a, normal);
     if (!(fall.rate > 0)) return {normal};
@@ -177,15 +172,15 @@ class Report {
   /// @param witness_crosses  found or not, there is a pair that does
   /// @return false where none crosses
   bool report_crossing(const Active& item, bool witness_crosses) noexcept {
-    const PairState& pair = pair_of(item);
-    const PairFrame& frame = memory_.frames[item.pair];
-    const Witness& witness = state_of(item).witness;
+    const PairState& pair = work_.pair_of(item);
+    const PairFrame& frame = work_.frame_of(item);
+    const Witness& witness = work_.witness_of(item);
     CrossingScratch& scratch = *memory_.crossing;
     scratch.list = {};
-    const std::uint64_t before = pace_.used();
-    const bool complete = find_crossings(*memory_.kernels, pair, frame, *memory_.search, pace_,
+    const std::uint64_t before = work_.pace.used();
+    const bool complete = find_crossings(*memory_.kernels, pair, frame, *memory_.search, work_.pace,
                                          item.region, scratch.list);
-    memory_.pursuit.learn_listing(static_cast<double>(pace_.used() - before), complete);
+    memory_.pursuit.learn_listing(static_cast<double>(work_.pace.used() - before), complete);
     if (scratch.list.count == 0) {
       if (!witness_crosses) return false;
       // Only where the budget or rounding kept the search from finding any: the list shall not
@@ -228,7 +223,7 @@ class Report {
   };
 
   void add(const Active& item, const Found& found) noexcept {
-    const PairState& pair = pair_of(item);
+    const PairState& pair = work_.pair_of(item);
     if (result_.contacts == memory_.contacts.size()) {
       result_.truncated_by_memory = true;
       return;
@@ -249,18 +244,15 @@ class Report {
     if (out.distance_m < result_.min_distance_m) result_.min_distance_m = out.distance_m;
   }
 
+  Work& work_;
   QueryMemory& memory_;
   std::span<const Active> active_;
-  Pace& pace_;
   QueryResult& result_;
   std::uint32_t ways_out_ = 0;
 };
 
 }  // namespace
 
-void report(QueryMemory& memory, std::span<const Active> active, Pace& pace,
-            QueryResult& result) noexcept {
-  Report(memory, active, pace, result).run();
-}
+void report(Work& work) noexcept { Report(work).run(); }
 
 }  // namespace palpate::regions

@@ -2,20 +2,17 @@
 // What a query found, as contacts.
 #pragma once
 
-#include <span>
-
-#include "rt_core/regions/regions_engine.hpp"
+#include "rt_core/regions/work.hpp"
 
 namespace palpate::regions {
 
-/// Appends a contact to memory.contacts for every active region whose witness, measured at the
+/// Appends a contact to work.memory.contacts for every active region whose witness, measured at the
 /// present poses, is nearer than delta: closest points and normal, or depth and direction of
 /// overlap where its triangles cross. A region that has passed through a face without crossing it
 /// any more is as deep as it is far from that face.
 ///
 /// Witnesses are placed in double and compared relative to the pair, sixteen at a time. Cost:
 /// O(active), and for every crossing region what find_crossings() and overlap() take.
-void report(QueryMemory& memory, std::span<const Active> active, Pace& pace,
-            QueryResult& result) noexcept;
+void report(Work& work) noexcept;
 
 }  // namespace palpate::regions

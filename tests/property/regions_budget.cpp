@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "host_bake/models/models.hpp"
+#include "rt_core/counters.hpp"
 #include "rt_core/regions/search.hpp"
 #include "tests/support/allocation_trap.hpp"
 #include "tests/support/brute_force.hpp"
@@ -221,6 +222,32 @@ TEST(RegionsBudget, deadline_ends_refinement) {
   EXPECT_TRUE(r.certificate.truncated_by_time);
   EXPECT_LE(clock.now, 12u);
   expect_certified(r, truth()[0]);
+}
+
+TEST(RegionsBudget, counters_tell_where_ticks_spend_their_time_and_how_many_regions_are_searched) {
+  BakedScene scene = scene_with(kSettings);
+  if (counters(*scene.engine) == nullptr) GTEST_SKIP() << "this build counts nothing";
+  CountingClock clock;
+  constexpr std::uint64_t kLate = 1u << 30;
+  std::uint64_t near = 0;
+  for (int i = 0; i < 4; ++i) {
+    const Pose poses[2] = {motion(i), {}};
+    const std::uint64_t begun = clock.now;
+    near += tick_or_fail(
+                *scene.engine, poses,
+                {.clock_ns = CountingClock::read, .clock_context = &clock, .deadline_ns = kLate})
+                .front_nodes;
+    EXPECT_GT(clock.now, begun);
+  }
+  const Counters& c = *counters(*scene.engine);
+  EXPECT_EQ(c.ticks, 4u);
+  EXPECT_EQ(c.sweeps, 1u);
+  EXPECT_EQ(c.near_regions, near);
+  EXPECT_GT(c.searches, 0u);
+  for (const Stage stage : {Stage::start, Stage::refine, Stage::settle, Stage::force}) {
+    EXPECT_GT(c.stage_ns[static_cast<std::size_t>(stage)], 0u) << static_cast<int>(stage);
+  }
+  EXPECT_EQ(c.stage_ns[static_cast<std::size_t>(Stage::interpolate)], 0u);
 }
 
 TEST(RegionsBudget, deadlines_that_have_always_passed_do_not_hide_contacts_for_ever) {

@@ -196,26 +196,25 @@ TEST(RegionsFollow, units_are_kept_and_distances_are_of_the_present_pose) {
   regions::QueryMemory& memory = s.engine->regions;
   const auto scratch = std::make_unique<regions::SearchScratch>();
   for (const double units : {0.0, 50.0, 500.0, 5000.0}) {
-    std::vector<regions::Active> active;
+    Meter meter({}, {});
+    regions::Work work(memory, {}, meter);
     std::vector<regions::Witness> before;
     for (std::uint32_t k = 0; k < memory.states.size(); ++k) {
       if (!memory.states[k].witness.known()) continue;
-      active.push_back({.width = 1, .state = k, .region = k});
+      memory.active[work.count++] = {.width = 1, .state = k, .region = k};
       before.push_back(memory.states[k].witness);
     }
-    Meter meter({}, {});
-    regions::Pace pace(meter);
-    regions::follow(memory, active, units, pace);
+    regions::follow(work, units);
     // A climb or a dive that has begun is finished, and so is a batch.
-    EXPECT_LE(static_cast<double>(pace.used()), units + 4.0 * regions::kBatchUnits);
-    for (std::size_t i = 0; i < active.size(); ++i) {
-      const regions::Witness& now = memory.states[active[i].state].witness;
+    EXPECT_LE(static_cast<double>(work.pace.used()), units + 4.0 * regions::kBatchUnits);
+    for (std::size_t i = 0; i < work.count; ++i) {
+      const regions::Witness& now = work.witness_of(work.active()[i]);
       EXPECT_LE(now.distance, before[i].distance);
-      EXPECT_EQ(s.bodies[0].region_triangles[now.a].region, active[i].region);
+      EXPECT_EQ(s.bodies[0].region_triangles[now.a].region, work.active()[i].region);
       float distances[regions::kBatch];
       scratch->batch_a[0] = now.a;
       scratch->batch_b[0] = now.b;
-      regions::measure(*memory.kernels, memory.frames[0], *scratch, pace, 1, distances);
+      regions::measure(*memory.kernels, memory.frames[0], *scratch, work.pace, 1, distances);
       EXPECT_EQ(distances[0], now.distance);
     }
   }

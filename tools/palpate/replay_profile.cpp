@@ -14,10 +14,16 @@ struct Count {
   const char* name;
   std::uint64_t Counters::*value;
 };
-constexpr Count kCounts[] = {
-    {"own_queries", &Counters::own_queries},   {"culling_queries", &Counters::culling_queries},
-    {"part_queries", &Counters::part_queries}, {"iterations", &Counters::iterations},
-    {"warm_queries", &Counters::warm_queries}, {"splits", &Counters::splits}};
+constexpr Count kCounts[] = {{"own_queries", &Counters::own_queries},
+                             {"culling_queries", &Counters::culling_queries},
+                             {"part_queries", &Counters::part_queries},
+                             {"iterations", &Counters::iterations},
+                             {"warm_queries", &Counters::warm_queries},
+                             {"splits", &Counters::splits},
+                             {"near_regions", &Counters::near_regions},
+                             {"searches", &Counters::searches},
+                             {"sweeps", &Counters::sweeps},
+                             {"follows", &Counters::follows}};
 
 struct Mark {
   const char* name;

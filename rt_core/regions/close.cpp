@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/close.hpp"
+
+#include "rt_core/regions/motion.hpp"
+
+namespace palpate::regions {
+namespace {
+
+using levels::PairState;
+
+/// An interval is closed to this share of its width at a time, and for good once it is narrower
+/// than a share of delta.
+constexpr float kStep = 0.3f;
+constexpr float kLastStep = 0.1f;
+/// Where an interval may stay open, a search leaves this share of that to motion, unless it is
+/// fast.
+constexpr float kRestShare = 0.75f;
+/// Neighbours of a witness farther than this many delta are not looked at.
+constexpr float kClimbReach = 2;
+
+/// Reach::margin of a search whose interval may stay open by the tolerance.
+float margin_within(const Work& work, const Active& item, float tolerance) noexcept {
+  // The search's bound gives away kRounding, which is part of the interval.
+  const float room = tolerance > kRounding ? tolerance - kRounding : 0;
+  auto margin = static_cast<float>(margin_of(work.pair_of(item)));
+  const bool slow = margin > 0;
+  const bool anew = item.rest <= 0;  // a first answer soon
+  if (slow && !anew && !work.demand.limited && margin < kRestShare * room) {
+    margin = kRestShare * room;
+  }
+  return margin - room;
+}
+
+/// @param first  ends as soon as a pair nearer than delta is known
+void search_region(Work& work, Active& item, float tolerance, bool first) noexcept {
+  if (item.width <= kClosed && item.width <= tolerance) return;
+  if (!work.pace.go_on()) {
+    work.truncated = true;
+    return;
+  }
+  QueryMemory& memory = work.memory;
+  const PairState& pair = work.pair_of(item);
+  RegionState& state = work.state_of(item);
+  const Reach reach{static_cast<float>(pair.delta) + kClosed, margin_within(work, item, tolerance),
+                    first};
+  const std::uint64_t before = work.pace.used();
+  const bool known = state.witness.known();
+  const float upper = work.upper_of(item);
+  const Bounds found = search(*memory.kernels, work.frame_of(item), *memory.search, work.pace,
+                              item.region, state.witness, reach);
+  const auto spent = static_cast<double>(work.pace.used() - before);
+  if (!first && found.complete) {
+    memory.pursuit.learn_search(spent);
+    state.cost = static_cast<float>(spent);
+    ++work.searches;
+  }
+  state.witness = found.best;
+  if (known) {
+    const auto nearer = static_cast<double>(upper - work.upper_of(item));
+    memory.pursuit.search.add(nearer / pair.delta, spent);
+  }
+  work.truncated |= !found.complete && !work.pace.go_on();
+  if (found.rest > item.rest) {
+    item.rest = found.rest;
+    item.moved = 0;
+    state.near = memory.search->near;
+    prove(state, pair, item.region, found.rest);
+  }
+  work.widen(item);
+}
+
+void climb_from_witness(Work& work, Active& item) noexcept {
+  climb(*work.memory.kernels, work.frame_of(item), *work.memory.search, work.pace,
+        work.witness_of(item));
+  item.climbed = true;
+  work.truncated |= !work.pace.go_on();
+  work.widen(item);
+}
+
+}  // namespace
+
+void close(Work& work, Active& item, float tolerance) noexcept {
+  search_region(work, item, tolerance, false);
+}
+
+void step(Work& work, Active& item, float tolerance, bool at_once) noexcept {
+  const Witness& witness = work.witness_of(item);
+  const float delta = work.delta_of(item);
+  if (witness.known() && !item.climbed && witness.distance < kClimbReach * delta) {
+    climb_from_witness(work, item);
+    return;
+  }
+  const bool first = !witness.known();
+  const bool by_and_by = !at_once && item.width > kLastStep * delta;
+  const float next = by_and_by ? kStep * item.width : 0;
+  search_region(work, item, next > tolerance ? next : tolerance, first);
+  if (first && witness.known() && !work.truncated) climb_from_witness(work, item);
+}
+
+}  // namespace palpate::regions

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// One region's interval made narrower.
+#pragma once
+
+#include "rt_core/regions/work.hpp"
+
+namespace palpate::regions {
+
+/// Searches a region until its interval is at most `tolerance` (units) wide, or the budget ends:
+/// then work.truncated. Cost: search().
+void close(Work& work, Active& item, float tolerance) noexcept;
+
+/// One step towards that under a budget that may end any moment, the cheap ones first: a witness is
+/// sought, then moved to the nearest of its neighbours, then the region is searched, by and by.
+/// @param at_once  not by and by
+void step(Work& work, Active& item, float tolerance, bool at_once) noexcept;
+
+}  // namespace palpate::regions

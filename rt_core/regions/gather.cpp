@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/gather.hpp"
+
+#include "rt_core/regions/motion.hpp"
+#include "rt_core/regions/pair_batch.hpp"
+
+namespace palpate::regions {
+namespace {
+
+using levels::PairState;
+
+/// A move by more than this (in units), or by this many delta where that is more, starts anew.
+constexpr double kJump = 0.05;
+constexpr double kJumpDelta = 2;
+
+/// Rounded towards minus infinity far enough for float.
+float float_below(double v) noexcept { return static_cast<float>(v - 1e-7 * (v < 0 ? -v : v)); }
+
+void sweep_if_lost(Work& work, std::uint32_t index) noexcept {
+  QueryMemory& memory = work.memory;
+  PairState& pair = memory.pairs[index];
+  const double far = kJumpDelta * pair.delta > kJump ? kJumpDelta * pair.delta : kJump;
+  if (!pair.fresh && last_motion(pair) <= far) return;
+  pair.fresh = false;
+  work.swept = true;
+  memory.containment[index].doubtful = true;
+  const std::span<float> swept = memory.swept.first(pair.image_a->regions.size());
+  sweep(*memory.kernels, memory.frames[index], *memory.search, work.pace,
+        static_cast<float>(pair.delta + margin_of(pair)), swept);
+  for (std::uint32_t i = 0; i < swept.size(); ++i) {
+    RegionState& state = memory.states[memory.first_state[index] + i];
+    state.near.count = 0;
+    state.seeds.count = 0;
+    prove(state, pair, i, sqrt_of(swept[i]) - kRounding);
+  }
+}
+
+/// The regions of a pair that may be nearer than delta.
+void gather_regions(Work& work, std::uint32_t index) noexcept {
+  QueryMemory& memory = work.memory;
+  const PairState& pair = memory.pairs[index];
+  const std::uint32_t first = memory.first_state[index];
+  const auto regions = pair.image_a->regions;
+  const double far = pair.delta + pair.deviation;
+  for (std::uint32_t i = 0; i < regions.size(); ++i) {
+    const RegionState& state = memory.states[first + i];
+    if (static_cast<double>(state.lower) - way_since(state, pair) >= far) continue;
+    const double moved_by = moved_since(state, pair, i);
+    const double lower = static_cast<double>(state.lower) - moved_by;
+    if (lower >= pair.delta) {
+      if (lower < far) work.result.open_m += (far - lower) * pair.unit_m;
+      continue;
+    }
+    memory.active[work.count++] = {.rest = float_below(static_cast<double>(state.rest) - moved_by),
+                                   .moved = static_cast<float>(moved_by),
+                                   .state = first + i,
+                                   .region = i,
+                                   .pair = index};
+  }
+}
+
+void take_if_nearer(Work& work, std::uint32_t index, const Witness& pair) noexcept {
+  Witness& witness = work.witness_of(work.active()[index]);
+  if (pair.distance < witness.distance) witness = pair;
+}
+
+void measure_witnesses(Work& work) noexcept {
+  PairBatch batch(work,
+                  [&work](std::uint32_t i, const Witness& pair) { take_if_nearer(work, i, pair); });
+  for (std::uint32_t i = 0; i < work.count; ++i) {
+    const Active& item = work.active()[i];
+    Witness& witness = work.witness_of(item);
+    if (!witness.known()) continue;
+    const Witness at_last = witness;
+    if (static_cast<double>(at_last.distance) <= last_motion(work.pair_of(item))) {
+      work.memory.containment[item.pair].doubtful = true;
+    }
+    witness.distance = kFarthest;
+    batch.add(i, at_last);
+  }
+  batch.measure_all();
+}
+
+/// Those of the near pairs that may be nearer than the witness now. Where the budget ends this,
+/// they count as not kept.
+void measure_near_pairs(Work& work) noexcept {
+  PairBatch batch(work,
+                  [&work](std::uint32_t i, const Witness& pair) { take_if_nearer(work, i, pair); });
+  for (std::uint32_t i = 0; i < work.count; ++i) {
+    Active& item = work.active()[i];
+    const RegionState& state = work.state_of(item);
+    const float upper = work.upper_of(item);
+    for (std::uint32_t k = 0; k < state.near.count; ++k) {
+      const Witness& pair = state.near.pairs[k];
+      const float lower = pair.distance - item.moved;
+      if (lower >= upper) break;
+      if (!work.pace.go_on()) {
+        item.rest = lower - kRounding < item.rest ? lower - kRounding : item.rest;
+        break;
+      }
+      if (!pair.same_pair(state.witness)) batch.add(i, pair);
+    }
+  }
+  batch.measure_all();
+}
+
+}  // namespace
+
+void gather(Work& work) noexcept {
+  for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
+    work.memory.frames[i] = frame_of(work.memory.pairs[i]);
+    sweep_if_lost(work, i);
+    gather_regions(work, i);
+  }
+  measure_witnesses(work);
+  measure_near_pairs(work);
+  thin_out(work);
+  work.widen_all();
+}
+
+}  // namespace palpate::regions

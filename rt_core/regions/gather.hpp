@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// What of last tick's bounds holds at the present poses.
+#pragma once
+
+#include "rt_core/regions/work.hpp"
+
+namespace palpate::regions {
+
+/// Sets work.active() to the regions that may be nearer than delta by now, and measures their
+/// witnesses and those of their kept pairs that may be nearer. Other regions add to
+/// result.open_m what detail that was left out may have hidden. After a jump, when bounds say
+/// nothing and witnesses little, one pass over both trees comes first (sweep.hpp), and nothing is
+/// kept of witnesses' neighbours.
+///
+/// Where more are felt than there is time to report, some are thinned out (crowd.hpp). Widths are
+/// set. Cost: O(regions), and a sixteenth of a batch for each pair that is measured.
+void gather(Work& work) noexcept;
+
+}  // namespace palpate::regions

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/narrow.hpp"
+
+#include "rt_core/base/queue.hpp"
+#include "rt_core/regions/close.hpp"
+#include "rt_core/regions/follow.hpp"
+
+namespace palpate::regions {
+namespace {
+
+constexpr std::uint64_t kLeastUnits = 64;
+/// Intervals are closed at once where the searches of all would take less than so many times what
+/// the tick has left: steps see more of what a tick has no time for, and take half as much again.
+constexpr double kAtOnce = 1.5;
+/// Under a budget, searches do not keep up where those of the intervals wider than a share of delta
+/// would take so many ticks; asked when so many searches have told what they take, and again every
+/// few steps.
+constexpr float kWide = 0.1f;
+constexpr double kManyTicks = 10;
+constexpr std::uint32_t kFewSearches = 4;
+constexpr std::uint32_t kStepsPerLook = 4;
+/// After a jump it is asked once, of the whole tick, as soon as so many regions have been searched;
+/// and not where so few units are left for each that a dive and a climb are not to be had.
+constexpr double kManyTicksAfterJump = 5;
+constexpr std::uint32_t kFewAfterJump = 2;
+constexpr double kUnitsToFollow = 16;
+/// Then following takes this share of what is left, the larger where it brings witnesses nearer
+/// for the same work than searches do: by half as much, for it also keeps them there.
+constexpr double kMostFollow = 0.85;
+constexpr double kLeastFollow = 0.05;
+constexpr double kFollowWorth = 2;
+/// In a tick, all regions together, in contact tolerances: less is what witnesses waver by.
+constexpr double kLeastGain = 0.006;
+
+/// Of equally urgent ones, as after a jump, neighbours are far apart in the order, so that a budget
+/// which ends early has seen something of everywhere.
+struct MoreUrgent {
+  std::span<const Active> active;
+  static std::uint32_t scattered(std::uint32_t i) noexcept { return i * 0x9e3779b1u; }
+  bool operator()(std::uint32_t a, std::uint32_t b) const noexcept {
+    const float of_a = active[a].urgency;
+    const float of_b = active[b].urgency;
+    return of_a > of_b || (of_a == of_b && scattered(a) < scattered(b));
+  }
+};
+
+class Narrowing {
+ public:
+  explicit Narrowing(Work& work) noexcept : work_(work), pursuit_(work.memory.pursuit) {}
+
+  void run() noexcept {
+    share_tolerance();
+    narrow_widest(work_.demand.limited);
+    if (lags_) {
+      work_.followed = true;
+      follow_witnesses();
+      narrow_widest(false);
+    }
+    pursuit_.search.fade();
+    pursuit_.follow.fade();
+    if (!work_.truncated) decide_crossings();
+  }
+
+ private:
+  /// A region whose share of a tolerance is larger is searched less often. While intervals grow
+  /// alike, all searches together are cheapest with shares in proportion to the root of what a
+  /// search costs: least sum of cost / share for a given sum of shares.
+  void share_tolerance() noexcept {
+    if (work_.demand.tolerance_m <= 0) return;
+    float sum = 0;
+    float known = 0;
+    for (const Active& item : work_.active()) {
+      sum += sqrt_of(cost_of(item));
+      known += cost_of(item) > 0 ? 1.0f : 0.0f;
+    }
+    for (Active& item : work_.active()) {
+      const float cost = cost_of(item);
+      if (cost > 0) item.weight = sqrt_of(cost) * known / sum;
+      work_.widen(item);
+    }
+  }
+
+  /// An interval may stay open by this much, but not down to zero: what crosses has a depth, of
+  /// which the interval says nothing.
+  float share_of(const Active& item) noexcept {
+    const double mean_m = work_.demand.tolerance_m / work_.count;
+    const float share = item.weight * static_cast<float>(mean_m / work_.pair_of(item).unit_m);
+    const float half = 0.5f * work_.upper_of(item);
+    return share < half ? share : half;
+  }
+
+  /// Until the open intervals are within the tolerance or the budget ends.
+  /// @param may_lag  or until it shows that searches do not keep up
+  void narrow_widest(bool may_lag) noexcept {
+    MinQueue<std::uint32_t, MoreUrgent> queue(work_.memory.queue, MoreUrgent{work_.active()});
+    double open_m = 0;
+    felt_ = crossing_ = 0;
+    for (std::uint32_t i = 0; i < work_.count; ++i) {
+      open_m += work_.width_m(work_.active()[i]);
+      count_in(work_.active()[i]);
+      queue.push(i);
+    }
+    leave_for_report();
+    const bool at_once = work_.demand.limited && pursuit_.searches >= kFewSearches &&
+                         units_to_close() < kAtOnce * affordable();
+    for (std::uint32_t step = 0; !queue.empty() && open_m > work_.demand.tolerance_m; ++step) {
+      const std::uint32_t index = queue.top();
+      Active& item = work_.active()[index];
+      if (may_lag && step % kStepsPerLook == 0 && lags()) return;
+      queue.pop();
+      if (item.width <= kClosed) break;
+      open_m -= work_.width_m(item);
+      const std::uint64_t known = felt_ + crossing_;
+      count_out(item);
+      narrow_one(item, at_once);
+      count_in(item);
+      if (felt_ + crossing_ > known) leave_for_report();
+      open_m += work_.width_m(item);
+      if (work_.truncated) return;
+      queue.push(index);
+    }
+  }
+
+  void narrow_one(Active& item, bool at_once) noexcept {
+    if (work_.demand.limited) {
+      step(work_, item, share_of(item), at_once);
+    } else {
+      close(work_, item, share_of(item));
+    }
+  }
+
+  /// For most of the budget where that brings witnesses nearer, else for as much as it takes to
+  /// see when it does. After a jump there is nothing to see yet.
+  void follow_witnesses() noexcept {
+    const Yield& by_search = pursuit_.search;
+    const Yield& by_follow = pursuit_.follow;
+    const double units = affordable();
+    const bool worthwhile = by_follow.gain * units > kLeastGain * by_follow.units;
+    const bool better =
+        work_.swept || (worthwhile && kFollowWorth * by_follow.gain * by_search.units >
+                                          by_search.gain * by_follow.units);
+    follow(work_, (better ? kMostFollow : kLeastFollow) * units);
+    work_.widen_all();
+  }
+
+  /// Regions of which a part not looked at may cross the other body by now.
+  void decide_crossings() noexcept {
+    for (Active& item : work_.active()) {
+      if (item.rest <= 0 && item.width > kClosed) close(work_, item, share_of(item));
+    }
+  }
+
+  void count_in(const Active& item) noexcept {
+    felt_ += counts_as_felt(item) ? 1u : 0u;
+    crossing_ += work_.is_crossing(item) ? 1u : 0u;
+  }
+  void count_out(const Active& item) noexcept {
+    felt_ -= counts_as_felt(item) ? 1u : 0u;
+    crossing_ -= work_.is_crossing(item) ? 1u : 0u;
+  }
+  bool counts_as_felt(const Active& item) noexcept {
+    return work_.is_felt(item) && work_.is_present(item);
+  }
+
+  /// Time for all contacts, and units for the pairs of triangles that cross (report.hpp).
+  void leave_for_report() noexcept {
+    work_.meter.expect_contacts(tail_contacts(felt_, crossing_));
+    work_.meter.set_aside(
+        static_cast<std::uint64_t>(static_cast<double>(crossing_) * pursuit_.listing_units));
+  }
+
+  float cost_of(const Active& item) noexcept { return work_.state_of(item).cost; }
+
+  /// About, of all open intervals.
+  double units_to_close() noexcept {
+    double units = 0;
+    for (const Active& item : work_.active()) {
+      if (item.width <= kClosed || !work_.is_present(item)) continue;
+      const float cost = cost_of(item);
+      units += cost > 0 ? static_cast<double>(cost) : pursuit_.search_units;
+    }
+    return units;
+  }
+
+  /// Searches of all wide intervals that are felt take many times what the tick has left.
+  bool lags() noexcept {
+    if (work_.swept) return lags_after_jump();
+    lags_ = pursuit_.searches >= kFewSearches && units_to_search() > kManyTicks * affordable();
+    return lags_;
+  }
+
+  bool lags_after_jump() noexcept {
+    if (asked_ || work_.searches < kFewAfterJump) return false;
+    asked_ = true;
+    lags_ = affordable() > kUnitsToFollow * work_.count &&
+            units_to_search() > kManyTicksAfterJump * affordable();
+    return lags_;
+  }
+
+  double units_to_search() noexcept {
+    std::uint32_t wide = 0;
+    for (const Active& item : work_.active()) {
+      wide += counts_as_felt(item) && item.width > kWide * work_.delta_of(item) ? 1u : 0u;
+    }
+    return wide * pursuit_.search_units;
+  }
+
+  /// Work units that the tick has left, about.
+  double affordable() const noexcept { return work_.meter.queries_affordable(pursuit_.unit_ns); }
+
+  Work& work_;
+  Pursuit& pursuit_;
+  bool lags_ = false;           // searches do not keep up
+  bool asked_ = false;          // after a jump: whether they will
+  std::uint64_t felt_ = 0;      // of active regions
+  std::uint64_t crossing_ = 0;  // likewise
+};
+
+}  // namespace
+
+void narrow(Work& work) noexcept {
+  work.pace.grant(kLeastUnits);
+  if (work.demand.limited || work.demand.tolerance_m > 0) {
+    Narrowing(work).run();
+    return;
+  }
+  for (Active& item : work.active()) close(work, item, 0);
+}
+
+}  // namespace palpate::regions

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/work.hpp"
+
+namespace palpate::regions {
+namespace {
+
+/// What may cross the other body goes first, as if its interval were wider by so many delta: how
+/// deep it would be is not in it. Not after a jump, when nothing is known of anything.
+constexpr float kMayCross = 1;
+/// What is not felt, because others beside it are, goes last.
+constexpr float kNotFelt = 1e-3f;
+
+}  // namespace
+
+void Work::widen(Active& item) noexcept {
+  const float upper = upper_of(item);
+  item.width = upper > item.rest ? upper - (item.rest > 0 ? item.rest : 0) : 0;
+  const bool unknown = is_felt(item) || !witness_of(item).known();
+  const bool may_cross = demand.limited && !swept && item.rest <= 0 && unknown;
+  const float doubt = may_cross ? kMayCross * delta_of(item) : 0;
+  item.urgency = item.width > kClosed ? (item.width + doubt) / item.weight : 0;
+  if (!is_present(item)) item.urgency *= kNotFelt;
+}
+
+void Work::widen_all() noexcept {
+  for (Active& item : active()) widen(item);
+}
+
+}  // namespace palpate::regions

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the stages of one query share: gather, narrow, certify, report.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "rt_core/regions/regions_engine.hpp"
+
+namespace palpate::regions {
+
+struct Work {
+  Work(QueryMemory& query_memory, const Demand& query_demand, Meter& query_meter) noexcept
+      : memory(query_memory), demand(query_demand), meter(query_meter), pace(query_meter) {}
+
+  [[nodiscard]] std::span<Active> active() const noexcept { return memory.active.first(count); }
+  [[nodiscard]] levels::PairState& pair_of(const Active& item) const noexcept {
+    return memory.pairs[item.pair];
+  }
+  [[nodiscard]] const PairFrame& frame_of(const Active& item) const noexcept {
+    return memory.frames[item.pair];
+  }
+  [[nodiscard]] RegionState& state_of(const Active& item) const noexcept {
+    return memory.states[item.state];
+  }
+  [[nodiscard]] Witness& witness_of(const Active& item) const noexcept {
+    return state_of(item).witness;
+  }
+
+  [[nodiscard]] float delta_of(const Active& item) const noexcept {
+    return static_cast<float>(pair_of(item).delta);
+  }
+  /// min(witness, delta)
+  [[nodiscard]] float upper_of(const Active& item) const noexcept {
+    return is_felt(item) ? witness_of(item).distance : delta_of(item);
+  }
+  [[nodiscard]] bool is_felt(const Active& item) const noexcept {
+    return witness_of(item).nearer_than(delta_of(item));
+  }
+  [[nodiscard]] bool is_crossing(const Active& item) const noexcept {
+    return witness_of(item).crosses();
+  }
+  /// Not thinned out (crowd.hpp).
+  [[nodiscard]] bool is_present(const Active& item) const noexcept {
+    return memory.crowd.has(item.state);
+  }
+  [[nodiscard]] double width_m(const Active& item) const noexcept {
+    return static_cast<double>(item.width) * pair_of(item).unit_m;
+  }
+
+  /// A region whose bounds have changed: sets its width and urgency.
+  void widen(Active& item) noexcept;
+  void widen_all() noexcept;
+
+  QueryMemory& memory;
+  Demand demand;
+  Meter& meter;
+  Pace pace;
+  std::uint32_t count = 0;     ///< of active regions
+  std::uint32_t searches = 0;  ///< of whole regions, completed
+  bool swept = false;          ///< nothing was known when the tick began (sweep.hpp)
+  bool followed = false;       ///< searches did not keep up (follow.hpp)
+  bool truncated = false;      ///< the budget ended refinement
+  QueryResult result{.min_distance_m = std::numeric_limits<double>::infinity(),
+                     .unresolved_lower_m = std::numeric_limits<double>::infinity()};
+};
+
+}  // namespace palpate::regions
