@@ -17,6 +17,9 @@ constexpr std::size_t kSample = 256;
 constexpr int kTurns = 12;
 constexpr double kCosine = 0.99144486137381041;
 constexpr double kSine = 0.13052619222005159;
+// The tangent of half the angle that a box is turned by at first: six degrees.
+constexpr double kFirstTurn = 0.05;
+constexpr int kRounds = 16;
 
 struct Interval {
   double low = std::numeric_limits<double>::infinity();
@@ -65,9 +68,36 @@ class Search {
       u = unit(kCosine * u + kSine * cross(n, u));
     }
   }
+  /// The best one, about its own axes.
+  void consider_turned_a_little() {
+    double tangent = kFirstTurn;
+    for (int round = 0; round < kRounds; ++round) {
+      const double before = least_;
+      const Vec3d rows[3] = {best_.row0, best_.row1, best_.row2};
+      for (std::size_t k = 0; k < 3; ++k) {
+        consider(turned(rows, k, tangent));
+        consider(turned(rows, k, -tangent));
+      }
+      if (!(least_ < before)) tangent *= 0.5;
+    }
+  }
   [[nodiscard]] const Mat3d& best() const { return best_; }
 
  private:
+  /// @param tangent  of half the angle: the rest is exact arithmetic's, not libm's
+  static Mat3d turned(const Vec3d (&rows)[3], std::size_t about, double tangent) {
+    const double all = 1 + tangent * tangent;
+    const double cosine = (1 - tangent * tangent) / all;
+    const double sine = 2 * tangent / all;
+    const std::size_t u = (about + 1) % 3;
+    const std::size_t v = (about + 2) % 3;
+    Vec3d out[3];
+    out[about] = rows[about];
+    out[u] = cosine * rows[u] + sine * rows[v];
+    out[v] = cosine * rows[v] - sine * rows[u];
+    return {out[0], out[1], out[2]};
+  }
+
   std::vector<Vec3d> sample_;
   Mat3d best_;
   double least_ = std::numeric_limits<double>::infinity();
@@ -120,7 +150,10 @@ FittedBox fit_box(std::span<const Vec3d> points, Vec3d normal, std::span<const V
     }
     if (edges.empty()) search.consider_turned(n, across(n));
   }
-  if (edges.empty()) search.consider_turned(principal.row0, principal.row1);
+  if (edges.empty()) {
+    search.consider_turned(principal.row0, principal.row1);
+    search.consider_turned_a_little();
+  }
   return box_along(search.best(), points);
 }
 

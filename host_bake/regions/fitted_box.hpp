@@ -19,11 +19,13 @@ struct FittedBox {
 };
 
 /// The box of least surface among several directions: the principal axes, and boxes with one axis
-/// along their least one or along `normal`, turned about it in steps. Surface and not volume,
-/// because most point sets are nearly flat.
+/// along their least one or along `normal`, turned about it in steps. The best of them is then
+/// turned about its own axes by ever less, as long as that makes it smaller. Surface and not
+/// volume, because most point sets are nearly flat.
 /// @param points  at least one, within the unit ball (up to rounding)
 /// @param normal  of the surface that the points are of, any length; zero where there is none
-/// @param edges   further directions to try across `normal`
+/// @param edges   further directions to try across `normal`, of the only triangle that the points
+///                are of; its box lies along one of them, and is not turned further
 /// O(points): directions are compared on at most 256 of them.
 FittedBox fit_box(std::span<const Vec3d> points, Vec3d normal, std::span<const Vec3d> edges);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "host_bake/metrics/vector.hpp"
@@ -13,6 +14,16 @@ namespace {
 
 constexpr std::uint32_t kGroup = image::kRegionWidth;
 constexpr int kNormalRounds = 4;  // of the division of normals into two
+// Eight steps of 22.5 degrees make half a turn. Constants, for libm differs between hosts.
+constexpr int kDirections = 8;
+constexpr double kCosine = 0.92387953251128674;
+constexpr double kSine = 0.38268343236508977;
+constexpr std::size_t kSample = 512;  // faces that a direction is chosen by
+
+void widen(Vec3d& low, Vec3d& high, Vec3d p) {
+  low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+  high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+}
 
 class Divider {
  public:
@@ -43,7 +54,7 @@ class Divider {
         node.region = left == 0;
         within = node.region;
       }
-      if (left == 0 && node.count > kGroup) left = divide_position(node, true);
+      if (left == 0 && node.count > kGroup) left = divide_compactly(node);
       if (left != 0) {
         node.child = static_cast<std::uint32_t>(out_.nodes.size());
         out_.nodes.push_back({node.first, left, 0, false});
@@ -71,11 +82,7 @@ class Divider {
     Vec3d low{2, 2, 2};
     Vec3d high{-2, -2, -2};
     for (const std::uint32_t f : faces_of(node)) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        const Vec3d p = point(f, c);
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-      }
+      for (std::size_t c = 0; c < 3; ++c) widen(low, high, point(f, c));
     }
     const Vec3d middle = 0.5 * (low + high);
     double squared = 0;
@@ -90,29 +97,86 @@ class Divider {
   std::uint32_t divide_region(const Node& node) {
     if (node.count < 2) return 0;
     const double radius = radius_of(node);
-    if (radius > options_.radius) return divide_position(node, false);
+    if (radius > options_.radius) return divide_position(node);
     if (radius < options_.least_share * options_.radius) return 0;
     return divide_normals(node);
   }
 
-  std::uint32_t divide_position(const Node& node, bool full_groups) {
+  /// In the middle of the longest principal axis.
+  std::uint32_t divide_position(const Node& node) {
     const auto faces = faces_of(node);
+    return divide_across(principal(faces).row2, faces, node.count / 2);
+  }
+
+  /// Across the direction that leaves the roundest parts, at a multiple of sixteen, so that groups
+  /// are full.
+  std::uint32_t divide_compactly(const Node& node) {
+    const auto faces = faces_of(node);
+    const std::uint32_t groups = (node.count / 2 + kGroup / 2) / kGroup;
+    const std::uint32_t left = std::max(1u, groups) * kGroup;
+    return divide_across(across_round_parts(faces, left), faces, left);
+  }
+
+  Mat3d principal(std::span<const std::uint32_t> faces) const {
     Moments moments;
     for (const std::uint32_t f : faces) moments.add(centres_[f]);
-    const Vec3d axis = principal_axes(moments).row2;
-    const auto key = [&](std::uint32_t f) { return dot(axis, centres_[f]); };
-    std::uint32_t left = node.count / 2;
-    if (full_groups) left = std::max(kGroup, (left + kGroup / 2) / kGroup * kGroup);
-    std::nth_element(faces.begin(), faces.begin() + left, faces.end(),
-                     [&](std::uint32_t x, std::uint32_t y) {
-                       const double kx = key(x);
-                       const double ky = key(y);
-                       return kx < ky || (kx == ky && x < y);
-                     });
+    return principal_axes(moments);
+  }
+
+  /// The `left` faces that come first along an axis, and the others.
+  std::uint32_t divide_across(Vec3d axis, std::span<std::uint32_t> faces,
+                              std::uint32_t left) const {
+    const auto middle = faces.begin() + left;
+    std::nth_element(faces.begin(), middle, faces.end(), [&](std::uint32_t x, std::uint32_t y) {
+      const double kx = dot(axis, centres_[x]);
+      const double ky = dot(axis, centres_[y]);
+      return kx < ky || (kx == ky && x < y);
+    });
     // nth_element leaves an order of its own behind.
-    std::sort(faces.begin(), faces.begin() + left);
-    std::sort(faces.begin() + left, faces.end());
+    std::sort(faces.begin(), middle);
+    std::sort(middle, faces.end());
     return left;
+  }
+
+  /// Of eight directions along the patch that faces lie in.
+  Vec3d across_round_parts(std::span<const std::uint32_t> faces, std::uint32_t left) const {
+    std::vector<std::uint32_t> sample;
+    const std::size_t step = (faces.size() + kSample - 1) / kSample;
+    for (std::size_t i = 0; i < faces.size(); i += step) sample.push_back(faces[i]);
+    const auto share = static_cast<std::uint32_t>(left * sample.size() / faces.size());
+    const Mat3d along = principal(sample);
+    Vec3d u = along.row2;
+    Vec3d v = along.row1;
+    Vec3d best = u;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < kDirections; ++i) {
+      divide_across(u, sample, share);
+      const auto parts = std::span(sample);
+      const double size = size_of(parts.first(share)) + size_of(parts.subspan(share));
+      if (size < least) {
+        least = size;
+        best = u;
+      }
+      const Vec3d turned = kCosine * u + kSine * v;
+      v = kCosine * v - kSine * u;
+      u = turned;
+    }
+    return best;
+  }
+
+  /// Squared diagonal of the box along the principal axes of some faces' corners.
+  double size_of(std::span<const std::uint32_t> faces) const {
+    Moments moments;
+    for (const std::uint32_t f : faces) {
+      for (std::size_t c = 0; c < 3; ++c) moments.add(point(f, c));
+    }
+    const Mat3d axes = principal_axes(moments);
+    Vec3d low{2, 2, 2};
+    Vec3d high{-2, -2, -2};
+    for (const std::uint32_t f : faces) {
+      for (std::size_t c = 0; c < 3; ++c) widen(low, high, axes * point(f, c));
+    }
+    return squared_norm(high - low);
   }
 
   /// Two groups of like normals (2-means, seeded by the mean and what is farthest from it).
@@ -146,7 +210,7 @@ class Divider {
     if (!turns && dot(to[0], to[1]) >= options_.walls_cosine) return 0;
     const auto middle = std::stable_partition(faces.begin(), faces.end(),
                                               [&](std::uint32_t f) { return !is_odd(f); });
-    if (middle == faces.begin() || middle == faces.end()) return divide_position(node, false);
+    if (middle == faces.begin() || middle == faces.end()) return divide_position(node);
     return static_cast<std::uint32_t>(middle - faces.begin());
   }
 
