@@ -16,7 +16,7 @@ constexpr double kMostOver = 1.25;
 constexpr std::uint32_t kSlack = 2;
 /// So few regions are not thinned out: a force would miss any of them.
 constexpr double kFewestFelt = 32;
-/// In which order siblings stay: whoever is left is far from the others (van der Corput 1935).
+/// In which order neighbours stay: whoever is left is far from the others (van der Corput 1935).
 constexpr std::uint32_t kOrder[Crowd::kAll] = {0, 8, 4, 12, 2, 10, 6, 14,
                                                1, 9, 5, 13, 3, 11, 7, 15};
 
@@ -29,8 +29,8 @@ class Thinning {
   std::uint32_t run() noexcept {
     std::uint32_t stay = 0;
     for (std::size_t i = 0; i < active_.size();) {
-      const std::size_t end = siblings_end(i);
-      stay += thin_out_siblings(active_.subspan(i, end - i));
+      const std::size_t end = neighbours_end(i);
+      stay += thin_out_neighbours(active_.subspan(i, end - i));
       i = end;
     }
     return stay;
@@ -43,31 +43,28 @@ class Thinning {
   const Witness& witness_of(const Active& item) noexcept {
     return memory_.states[item.state].witness;
   }
-  const image::Region& region_of(const Active& item) noexcept {
-    return memory_.pairs[item.pair].image_a->regions[item.region];
-  }
 
-  std::size_t siblings_end(std::size_t first) noexcept {
+  std::size_t neighbours_end(std::size_t first) noexcept {
     const Active& head = active_[first];
     std::size_t end = first + 1;
     while (end < active_.size() && active_[end].pair == head.pair &&
-           region_of(active_[end]).parent == region_of(head).parent) {
+           active_[end].region / Crowd::kAll == head.region / Crowd::kAll) {
       ++end;
     }
     return end;
   }
 
   bool stays(const Active& item) noexcept {
-    return kOrder[region_of(item).slot] < memory_.crowd.share;
+    return kOrder[item.region % Crowd::kAll] < memory_.crowd.share;
   }
 
-  std::uint32_t thin_out_siblings(std::span<const Active> siblings) noexcept {
+  std::uint32_t thin_out_neighbours(std::span<const Active> neighbours) noexcept {
     bool alone = true;  // the first that is felt, and none that stays
-    for (const Active& item : siblings) {
+    for (const Active& item : neighbours) {
       if (is_apart(item) && stays(item)) alone = false;
     }
     std::uint32_t stay = 0;
-    for (const Active& item : siblings) {
+    for (const Active& item : neighbours) {
       float& absence = memory_.crowd.absence[item.state];
       if (is_apart(item)) {
         const bool here = alone || stays(item);

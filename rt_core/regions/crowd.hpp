@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <span>
 
-#include "rt_core/image/region_format.hpp"
-
 namespace palpate::regions {
 
 struct Active;
@@ -15,9 +13,9 @@ struct Work;
 
 /// Who is felt, from tick to tick.
 struct Crowd {
-  static constexpr std::uint32_t kAll = image::kRegionWidth;
+  static constexpr std::uint32_t kAll = 16;
 
-  std::uint32_t share = kAll;  ///< of sixteen regions beside each other so many are, at least one
+  std::uint32_t share = kAll;  ///< of sixteen regions in a row so many are, at least one
   bool thinned = false;        ///< not all are, or not wholly
   std::span<float> absence;    ///< [states] how much of each is not: 0 to 1
 
@@ -37,8 +35,9 @@ struct Crowd {
 
 /// Thins out the regions that are felt where they are more than `most`, evenly over the surface:
 /// what is left tells much the same force, for that is felt once in each direction however many
-/// tell it (force/penalty.hpp), and each gets more of the tick's work. Of the children of one node
-/// at least one stays, so that no place is lost, and all that cross the other body.
+/// tell it (force/penalty.hpp), and each gets more of the tick's work. Regions are numbered
+/// depth first, so that those in a row are neighbours: of sixteen at least one stays, so that no
+/// place is lost, and all that cross the other body.
 ///
 /// Who stays or goes does so by a sixteenth a tick, so that forces come and go smoothly. What is
 /// not felt yet is wholly there.

@@ -29,7 +29,14 @@ class Sweep {
   void run() noexcept {
     for (float& squared : out_squared_) squared = std::numeric_limits<float>::max();
     const RegionNode& root = frame_.a->region_nodes[0];
-    for (std::uint32_t slot = 0; slot < root.children; ++slot) split_b(child_name(0, slot), 0);
+    for (std::uint32_t slot = 0; slot < root.children; ++slot) {
+      const std::uint32_t child = child_name(0, slot);
+      if (pace_.go_on()) {
+        split_b(child, 0);
+      } else {
+        cover(child, 0);
+      }
+    }
     while (size_ > 0) {
       const Candidate top = scratch_.stack[--size_];
       if (tells_nothing(top)) continue;
