@@ -84,7 +84,7 @@ class Search {
   [[nodiscard]] const Mat3d& best() const { return best_; }
 
  private:
-  /// @param tangent  of half the angle: the rest is exact arithmetic's, not libm's
+  /// @param tangent  of half the angle, from which sine and cosine follow without libm
   static Mat3d turned(const Vec3d (&rows)[3], std::size_t about, double tangent) {
     const double all = 1 + tangent * tangent;
     const double cosine = (1 - tangent * tangent) / all;

@@ -46,10 +46,9 @@ struct Partition {
 };
 
 /// What is larger than a region is divided in the middle of the longest principal axis of the
-/// triangles' centres; regions at a multiple of sixteen near the middle, so that groups are full,
-/// across that of eight directions along the patch which leaves the halves with the shortest
-/// diagonals.
-/// Every group is in exactly one region. Deterministic. O(n log^2 n).
+/// triangles' centres. Regions are divided at a multiple of sixteen near the middle, so that groups
+/// are full, across that of eight directions along the patch which leaves parts with the shortest
+/// diagonals. Every group is in exactly one region. Deterministic. O(n log^2 n).
 Partition divide(const NormalMesh& mesh, const RegionOptions& options);
 
 }  // namespace palpate::bake
