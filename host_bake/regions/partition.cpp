@@ -105,7 +105,9 @@ class Divider {
   /// In the middle of the longest principal axis.
   std::uint32_t divide_position(const Node& node) {
     const auto faces = faces_of(node);
-    return divide_across(principal(faces).row2, faces, node.count / 2);
+    const std::uint32_t left = node.count / 2;
+    divide_across(principal(faces).row2, faces, left);
+    return left;
   }
 
   /// Across the direction that leaves the roundest parts, at a multiple of sixteen, so that groups
@@ -114,7 +116,8 @@ class Divider {
     const auto faces = faces_of(node);
     const std::uint32_t groups = (node.count / 2 + kGroup / 2) / kGroup;
     const std::uint32_t left = std::max(1u, groups) * kGroup;
-    return divide_across(across_round_parts(faces, left), faces, left);
+    divide_across(across_round_parts(faces, left), faces, left);
+    return left;
   }
 
   Mat3d principal(std::span<const std::uint32_t> faces) const {
@@ -123,9 +126,8 @@ class Divider {
     return principal_axes(moments);
   }
 
-  /// The `left` faces that come first along an axis, and the others.
-  std::uint32_t divide_across(Vec3d axis, std::span<std::uint32_t> faces,
-                              std::uint32_t left) const {
+  /// Puts the `left` faces that come first along an axis before the others.
+  void divide_across(Vec3d axis, std::span<std::uint32_t> faces, std::uint32_t left) const {
     const auto middle = faces.begin() + left;
     std::nth_element(faces.begin(), middle, faces.end(), [&](std::uint32_t x, std::uint32_t y) {
       const double kx = dot(axis, centres_[x]);
@@ -135,10 +137,10 @@ class Divider {
     // nth_element leaves an order of its own behind.
     std::sort(faces.begin(), middle);
     std::sort(middle, faces.end());
-    return left;
   }
 
-  /// Of eight directions along the patch that faces lie in.
+  /// Of eight directions along the patch that the faces are, the one across which `left` of them
+  /// and the others have the shortest diagonals.
   Vec3d across_round_parts(std::span<const std::uint32_t> faces, std::uint32_t left) const {
     std::vector<std::uint32_t> sample;
     const std::size_t step = (faces.size() + kSample - 1) / kSample;

@@ -13,7 +13,10 @@ namespace palpate::regions {
 /// kept of witnesses' neighbours.
 ///
 /// Where more are felt than there is time to report, some are thinned out (crowd.hpp). Widths are
-/// set. Cost: O(regions), and a sixteenth of a batch for each pair that is measured.
+/// set. Pairs of bodies whose surfaces may have passed through each other are marked
+/// (Containment::doubtful).
+/// Cost: O(regions); what the pass takes; a sixteenth of a batch for each pair of triangles that is
+/// measured, witnesses whatever the budget.
 void gather(Work& work) noexcept;
 
 }  // namespace palpate::regions

@@ -8,6 +8,7 @@
 namespace palpate::regions {
 namespace {
 
+/// Done in every tick, however late it is.
 constexpr std::uint64_t kLeastUnits = 64;
 /// Intervals are closed at once where the searches of all would take less than so many times what
 /// the tick has left: steps see more of what a tick has no time for, and take half as much again.

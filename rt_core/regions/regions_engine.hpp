@@ -113,8 +113,8 @@ struct Demand {
 /// the curve in which they do the direction (crossing.hpp); for that, at most half of a budget is
 /// left.
 ///
-/// A contact's pieces are those of level 0 that hold the witnesses. Cost: the budget, plus
-/// O(regions), plus one witness of each near region.
+/// A contact's pieces are those of level 0 that hold the witnesses. Stages and counts go to the
+/// tally. Cost: the budget, plus O(regions), plus one witness of each near region.
 QueryResult query(QueryMemory& memory, const Demand& demand, Meter& meter, Tally& tally) noexcept;
 
 }  // namespace palpate::regions
