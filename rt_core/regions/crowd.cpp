@@ -16,6 +16,9 @@ constexpr double kMostOver = 1.25;
 constexpr std::uint32_t kSlack = 2;
 /// So few regions are not thinned out: a force would miss any of them.
 constexpr double kFewestFelt = 32;
+/// So many tell a force well. Where searches do not keep up, of more the geometric mean of this and
+/// of those there is time for are felt: the others' time does more for the witnesses of these.
+constexpr double kTelling = 128;
 /// In which order neighbours stay: whoever is left is far from the others (van der Corput 1935).
 constexpr std::uint32_t kOrder[Crowd::kAll] = {0, 8, 4, 12, 2, 10, 6, 14,
                                                1, 9, 5, 13, 3, 11, 7, 15};
@@ -122,7 +125,8 @@ void thin_out(Work& work) noexcept {
   std::uint64_t crossing = 0;
   for (const Active& item : work.active()) crossing += work.is_crossing(item) ? 1u : 0u;
   const auto taken = static_cast<double>(tail_contacts(0, crossing));
-  const double most = taken < 0.5 * all ? all - taken : 0.5 * all;
+  double most = taken < 0.5 * all ? all - taken : 0.5 * all;
+  if (work.memory.pursuit.lagged && most > kTelling) most = sqrt_of(kTelling * most);
   thin_out(work.memory, work.active(), most > kFewestFelt ? most : kFewestFelt);
 }
 

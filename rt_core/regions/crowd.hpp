@@ -46,7 +46,8 @@ struct Crowd {
 void thin_out(QueryMemory& memory, std::span<const Active> active, double most) noexcept;
 
 /// To what the time after the searches does for, of which what crosses takes half at most; a few
-/// regions are never thinned out. After a jump nobody knows yet who is felt, and all are.
+/// regions are never thinned out. Where searches do not keep up, many are to fewer than that. After
+/// a jump nobody knows yet who is felt, and all are.
 void thin_out(Work& work) noexcept;
 
 }  // namespace palpate::regions

@@ -57,6 +57,7 @@ class Narrowing {
       follow_witnesses();
       narrow_widest(false);
     }
+    pursuit_.lagged = lags_;
     pursuit_.search.fade();
     pursuit_.follow.fade();
     if (!work_.truncated) decide_crossings();

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "rt_core/regions/regions_engine.hpp"
+#include "rt_core/regions/work.hpp"
 
 namespace palpate::test {
 namespace {
@@ -41,6 +41,21 @@ struct Surface {
 
   void thin_out(double most, int ticks = kLong) {
     for (int i = 0; i < ticks; ++i) regions::thin_out(memory, active, most);
+  }
+  void thin_out_in_time_for(std::uint64_t contacts) {
+    constexpr std::uint64_t kContact_ns = 512;
+    TailTime tail;
+    for (int i = 0; i < kLong; ++i) tail.learn(kContact_ns, 0);
+    for (int i = 0; i < kLong; ++i) tail.learn(kContact_ns * 1000, 996);
+    const Budget budget{.clock_ns = [](void*) -> std::uint64_t { return 0; },
+                        .deadline_ns = 2 * kContact_ns * contacts};
+    memory.active = active;
+    for (int i = 0; i < kLong; ++i) {
+      Meter meter(budget, tail);
+      regions::Work work(memory, {}, meter);
+      work.count = static_cast<std::uint32_t>(active.size());
+      regions::thin_out(work);
+    }
   }
   std::size_t felt() const {
     return static_cast<std::size_t>(
@@ -126,6 +141,18 @@ TEST(RegionsCrowd, time_that_wavers_changes_nobody) {
     s.thin_out(i % 2 == 0 ? 92 : 108, 1);
     EXPECT_EQ(s.memory.crowd.share, share);
   }
+}
+
+TEST(RegionsCrowd, where_searches_do_not_keep_up_fewer_are_felt_than_there_is_time_for) {
+  const auto felt = [](std::uint64_t in_time, bool lagged) {
+    Surface s(32);
+    s.memory.pursuit.lagged = lagged;
+    s.thin_out_in_time_for(in_time);
+    return static_cast<double>(s.felt());
+  };
+  EXPECT_EQ(felt(500, false), 512);
+  EXPECT_NEAR(felt(500, true), std::sqrt(128.0 * 500), 0.25 * 253);
+  for (const std::uint64_t few : {60u, 120u}) EXPECT_EQ(felt(few, true), felt(few, false));
 }
 
 TEST(RegionsCrowd, all_are_gathered_at_once) {
