@@ -24,81 +24,88 @@ constexpr Mat3d kRays[] = {{{0.8, -0.6, 0.0}, {0.36, 0.48, -0.8}, {0.48, 0.64, 0
 
 bool is_one(const ImageView& body) noexcept { return body.header->source_components == 1; }
 
-class Ray {
- public:
-  Ray(const Kernels& kernels, const ImageView& body, Vec3d from, const Mat3d& axes,
-      SearchScratch& scratch, Pace& pace) noexcept
-      : kernels_(kernels), body_(body), from_(from), axes_(axes), scratch_(scratch), pace_(pace) {}
+/// A box without width, from a point on.
+/// @param axes  rows: two directions across the way, and its own
+Box box_along(Vec3d from, const Mat3d& axes, double length) noexcept {
+  const Vec3d middle = from + (0.5 * length) * axes.row2;
+  const Vec3d columns[4] = {axes.row0, axes.row1, axes.row2, middle};
+  Box box{};
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    box.x[k] = static_cast<float>(columns[k].x);
+    box.y[k] = static_cast<float>(columns[k].y);
+    box.z[k] = static_cast<float>(columns[k].z);
+  }
+  box.half[2] = static_cast<float>(0.5 * length) + kRoom;
+  return box;
+}
 
-  Side run() noexcept {
-    const Box box = ray_box();
-    const Transform stay = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}, 1};
-    BoxTest test;
-    std::uint32_t size = 0;
-    scratch_.stack[size++].a = 0;
-    while (size > 0 && !met_edge_) {
-      if (!pace_.go_on()) return Side::unknown;
-      pace_.charge(1);
-      const RegionNode& node = body_.region_nodes[scratch_.stack[--size].a];
-      std::uint32_t met = kernels_.test_boxes(box, stay, node, 1, kRoom * kRoom, test);
-      for (; met != 0; met &= met - 1) {
-        const auto child = node.first + static_cast<std::uint32_t>(__builtin_ctz(met));
-        if (node.leaf != 0) {
-          pass(body_.region_triangles[child]);
-        } else {
-          PALPATE_ASSERT(size < kMaxCandidates);
-          scratch_.stack[size++].a = child;
-        }
+/// Triangles whose boxes a box touches, while pass(triangle) says so.
+/// @return false where the pace ended it
+template <class Pass>
+bool visit_touched(const Kernels& kernels, const ImageView& body, const Box& box,
+                   SearchScratch& scratch, Pace& pace, Pass pass) noexcept {
+  constexpr Transform kStay = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}, 1};
+  BoxTest test;
+  std::uint32_t size = 0;
+  scratch.stack[size++].a = 0;
+  while (size > 0) {
+    if (!pace.go_on()) return false;
+    pace.charge(1);
+    const RegionNode& node = body.region_nodes[scratch.stack[--size].a];
+    std::uint32_t met = kernels.test_boxes(box, kStay, node, 1, kRoom * kRoom, test);
+    for (; met != 0; met &= met - 1) {
+      const auto child = node.first + static_cast<std::uint32_t>(__builtin_ctz(met));
+      if (node.leaf != 0) {
+        if (!pass(body.region_triangles[child])) return true;
+      } else {
+        PALPATE_ASSERT(size < kMaxCandidates);
+        scratch.stack[size++].a = child;
       }
     }
-    if (met_edge_) return Side::unknown;
-    return winding_ > 0 ? Side::inside : Side::outside;
   }
+  return true;
+}
 
- private:
-  /// A box without width, from the point on to beyond the body.
-  Box ray_box() const noexcept {
-    const double length = norm(from_) + kMostReach;
-    const Vec3d middle = from_ + (0.5 * length) * axes_.row2;
-    const Vec3d columns[4] = {axes_.row0, axes_.row1, axes_.row2, middle};
-    Box box{};
-    for (std::uint32_t k = 0; k < 4; ++k) {
-      box.x[k] = static_cast<float>(columns[k].x);
-      box.y[k] = static_cast<float>(columns[k].y);
-      box.z[k] = static_cast<float>(columns[k].z);
-    }
-    box.half[2] = static_cast<float>(0.5 * length) + kRoom;
-    return box;
-  }
-
-  /// Twice the area of the ray and an edge, seen along the ray; exactly the opposite for the
-  /// triangle on the edge's other side.
-  static double area(Vec3d p, Vec3d q) noexcept { return p.x * q.y - q.x * p.y; }
-
-  void pass(const RegionTriangle& t) noexcept {
-    const Vec3d p[3] = {axes_ * (vec3d(t.corners) - from_), axes_ * (vec3d(t.corners + 3) - from_),
-                        axes_ * (vec3d(t.corners + 6) - from_)};
-    const double e[3] = {area(p[1], p[2]), area(p[2], p[0]), area(p[0], p[1])};
-    const bool left = e[0] > 0 || e[1] > 0 || e[2] > 0;
-    const bool right = e[0] < 0 || e[1] < 0 || e[2] < 0;
-    if (left && right) return;
-    const double ahead = e[0] * p[0].z + e[1] * p[1].z + e[2] * p[2].z;
-    if (e[0] == 0 || e[1] == 0 || e[2] == 0 || ahead == 0) {
-      met_edge_ = true;
-      return;
-    }
-    if (left == (ahead > 0)) winding_ += left ? 1 : -1;
-  }
-
-  const Kernels& kernels_;
-  const ImageView& body_;
-  Vec3d from_;
-  const Mat3d& axes_;
-  SearchScratch& scratch_;
-  Pace& pace_;
-  int winding_ = 0;  // triangles passed outwards less those passed inwards
-  bool met_edge_ = false;
+/// How a ray meets a triangle.
+struct Meeting {
+  bool passed = false;    ///< through its inside, or exactly through its edge
+  bool edge = false;      ///< exactly; or it begins in its plane
+  bool outwards = false;  ///< else inwards
+  double way = 0;         ///< to there; < 0: behind where the ray begins
 };
+
+/// Twice the area of the ray and an edge, seen along the ray; exactly the opposite for the triangle
+/// on the edge's other side.
+double area(Vec3d p, Vec3d q) noexcept { return p.x * q.y - q.x * p.y; }
+
+Meeting meet(const RegionTriangle& t, Vec3d from, const Mat3d& axes) noexcept {
+  const Vec3d p[3] = {axes * (vec3d(t.corners) - from), axes * (vec3d(t.corners + 3) - from),
+                      axes * (vec3d(t.corners + 6) - from)};
+  const double e[3] = {area(p[1], p[2]), area(p[2], p[0]), area(p[0], p[1])};
+  const bool left = e[0] > 0 || e[1] > 0 || e[2] > 0;
+  const bool right = e[0] < 0 || e[1] < 0 || e[2] < 0;
+  if (left && right) return {};
+  const double ahead = e[0] * p[0].z + e[1] * p[1].z + e[2] * p[2].z;
+  const bool edge = e[0] == 0 || e[1] == 0 || e[2] == 0 || ahead == 0;
+  const double whole = e[0] + e[1] + e[2];
+  return {true, edge, left, whole != 0 ? ahead / whole : 0};
+}
+
+Side side_along(const Kernels& kernels, const ImageView& body, Vec3d from, const Mat3d& axes,
+                SearchScratch& scratch, Pace& pace) noexcept {
+  int winding = 0;  // triangles passed outwards less those passed inwards
+  bool met_edge = false;
+  const Box box = box_along(from, axes, norm(from) + kMostReach);
+  const bool complete =
+      visit_touched(kernels, body, box, scratch, pace, [&](const RegionTriangle& t) {
+        const Meeting m = meet(t, from, axes);
+        if (m.passed && !m.edge && m.way > 0) winding += m.outwards ? 1 : -1;
+        met_edge = m.edge;
+        return !met_edge;
+      });
+  if (!complete || met_edge) return Side::unknown;
+  return winding > 0 ? Side::inside : Side::outside;
+}
 
 }  // namespace
 
@@ -109,10 +116,29 @@ Side side_of(const Kernels& kernels, const ImageView& body, Vec3d point, SearchS
   }
   if (squared_norm(point) > kMostReach * kMostReach) return Side::outside;
   for (const Mat3d& axes : kRays) {
-    const Side side = Ray(kernels, body, point, axes, scratch, pace).run();
+    const Side side = side_along(kernels, body, point, axes, scratch, pace);
     if (side != Side::unknown) return side;
   }
   return Side::unknown;
+}
+
+bool in_sight(const Kernels& kernels, const ImageView& body, Vec3d from, Vec3d to,
+              SearchScratch& scratch, Pace& pace) noexcept {
+  constexpr double kWay = 0.999;
+  const double length = kWay * norm(to - from);
+  if (!(length > 0)) return true;
+  const Vec3d way = (kWay / length) * (to - from);
+  const Vec3d side = across(way);
+  const Mat3d axes{side, cross(way, side), way};
+  bool met = false;
+  const Box box = box_along(from, axes, length);
+  const bool complete =
+      visit_touched(kernels, body, box, scratch, pace, [&](const RegionTriangle& t) {
+        const Meeting m = meet(t, from, axes);
+        met = m.passed && m.way >= 0 && m.way < length;
+        return !met;
+      });
+  return complete && !met;
 }
 
 Side contained(const Kernels& kernels, const levels::PairState& pair, SearchScratch& scratch,

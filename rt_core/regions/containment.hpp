@@ -30,6 +30,13 @@ struct Containment {
 [[nodiscard]] Side side_of(const Kernels& kernels, const ImageView& body, Vec3d point,
                            SearchScratch& scratch, Pace& pace) noexcept;
 
+/// Whether a way meets no triangle of a surface; its last thousandth does not count, for it may end
+/// on the surface. False too where the pace ends before that is known.
+/// @param from, to  image coordinates of the body
+/// Cost: a unit for each node whose box the way passes through.
+[[nodiscard]] bool in_sight(const Kernels& kernels, const ImageView& body, Vec3d from, Vec3d to,
+                            SearchScratch& scratch, Pace& pace) noexcept;
+
 /// Side::inside where a vertex of one body is inside the other, for bodies whose triangles do not
 /// cross: then the whole body is. A body of several components is not asked for: its vertex would
 /// not speak for all of it.

@@ -96,7 +96,7 @@ class Report {
     // Touching, the outward normal of b's is right whichever side a comes from.
     const Vec3d normal = distance > kTouching ? (1 / distance) * apart : facing(pair, witness.b);
     const bool flip = distance > kTouching && (memory_.containment[item.pair].inside ||
-                                               is_behind(item, on_a - apart, normal));
+                                               is_behind(item, on_a, on_a - apart, normal));
     const Felt felt = flip ? Felt{-normal, 1} : at_border(item, on_a, on_a - apart, normal);
     add(item, {on_a, on_a - apart, felt.normal, flip ? -distance : distance,
                pair.image_a->region_triangles[witness.a].piece,
@@ -106,11 +106,12 @@ class Report {
   /// The region is nearest to the inner side of b's surface: it has passed through, beside others
   /// of its body that cross the surface or not. At an edge or a corner one face may mislead; the
   /// mean of their normals, weighted by the angles that they take up there, does not (Baerentzen
-  /// and Aanaes 2005). Not told where the interval is so open that the nearest may be a face before
-  /// this one, on a wall thinner than the interval; nor from a surface that is open to its back.
-  /// Most contacts meet their witness's face from before it and are told at once; so is, wrongly,
-  /// what is inside just beyond the tip of a pit as sharp as a needle.
-  bool is_behind(const Active& item, Vec3d on_b, Vec3d normal) noexcept {
+  /// and Aanaes 2005). While the interval is open the nearest may be a face before this one, on a
+  /// thinner wall or a blade's edge: then the point of a has to see the back of a face, too. Not
+  /// told where it is so open that the depth would be a guess; nor from a surface that is open to
+  /// its back. Most contacts meet their witness's face from before it and are told at once; so is,
+  /// wrongly, what is inside just beyond the tip of a pit as sharp as a needle.
+  bool is_behind(const Active& item, Vec3d on_a, Vec3d on_b, Vec3d normal) noexcept {
     constexpr double kSquare = 0.5;    // where none is met so squarely, blades meet
     constexpr double kLeast = 1e-3;    // of the mean: less is rounding, on a blade's edge
     constexpr double kMostOpen = 0.1;  // of delta
@@ -118,6 +119,7 @@ class Report {
     if (static_cast<double>(item.width) > kMostOpen * pair.delta) return false;
     const ImageView& b = *pair.image_b;
     const std::uint32_t face = work_.witness_of(item).b;
+    std::uint32_t from_behind = face;
     double least = dot(normal, facing(pair, face));
     if (least > kSquare) return false;
     const Feature at = feature_at(b.region_triangles[face], in_image_of_b(pair, on_b));
@@ -126,11 +128,32 @@ class Report {
     visit_around(b, face, at, [&](const Sector& sector) {
       const double beside = dot(normal, facing(pair, sector.triangle));
       const double angle = angle_of(sector);
+      from_behind = beside < least ? sector.triangle : from_behind;
       least = beside < least ? beside : least;
       angles += angle;
       mean += angle * beside;
     });
-    return least < -kSquare && mean < -kLeast * angles && is_closed(b, b.region_triangles[face]);
+    return least < -kSquare && mean < -kLeast * angles && is_closed(b, b.region_triangles[face]) &&
+           (item.width <= kClosed || sees_inside_of(pair, on_a, on_b, from_behind));
+  }
+
+  /// Whether nothing of b lies between a point and the inside of a triangle near another point on
+  /// it. Out of a budget of its own: a force must not turn round because the tick's has ended.
+  bool sees_inside_of(const PairState& pair, Vec3d point, Vec3d on_b,
+                      std::uint32_t triangle) noexcept {
+    constexpr std::uint64_t kMostUnits = 64;
+    constexpr double kAside = 0.25;  // of the way there
+    const ImageView& b = *pair.image_b;
+    const RegionTriangle& t = b.region_triangles[triangle];
+    const Vec3d from = in_image_of_b(pair, point);
+    const Vec3d edge = in_image_of_b(pair, on_b);
+    const Vec3d inwards = (1.0 / 3) * (corner(t, 0, 1) + corner(t, 1, 1) + corner(t, 2, 1)) - edge;
+    const double aside = kAside * norm(edge - from);
+    const double length = norm(inwards);
+    const Vec3d to = edge + (aside < length ? aside / length : 1) * inwards;
+    Meter meter({.units = kMostUnits}, {});
+    Pace pace(meter);
+    return in_sight(*memory_.kernels, b, from, to, *memory_.search, pace);
   }
 
   static Vec3d in_image_of_b(const PairState& pair, Vec3d point) noexcept {

@@ -12,7 +12,9 @@ namespace palpate::regions {
 /// any more is as deep as it is far from that face.
 ///
 /// Witnesses are placed in double and compared relative to the pair, sixteen at a time. Cost:
-/// O(active), and for every crossing region what find_crossings() and overlap() take.
+/// O(active), for every crossing region what find_crossings() and overlap() take, and a look
+/// through at most 64 nodes, which no budget counts, for one that seems to have passed through
+/// while its interval is open.
 void report(Work& work) noexcept;
 
 }  // namespace palpate::regions

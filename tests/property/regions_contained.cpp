@@ -5,7 +5,9 @@
 #include <cmath>
 #include <random>
 
+#include "rt_core/engine.hpp"
 #include "rt_core/regions/containment.hpp"
+#include "rt_core/regions/region_triangle.hpp"
 #include "tests/support/baked_scene.hpp"
 #include "tests/support/placements.hpp"
 #include "tests/support/shapes.hpp"
@@ -116,6 +118,9 @@ TEST(RegionsContained, side_of_a_point_is_that_of_the_shape) {
   std::uniform_real_distribution<double> coordinate(-1.4, 1.4);
   const auto scratch = std::make_unique<regions::SearchScratch>();
   int inside = 0;
+  int seen_inside = 0;
+  Vec3d last{2, 0, 0};
+  regions::Side last_side = regions::Side::outside;
   for (int i = 0; i < 2000; ++i) {
     const Vec3d p{coordinate(rng), coordinate(rng), coordinate(rng)};
     const double distance = norm(radius * p + Vec3d{centre[0], centre[1], centre[2]});
@@ -126,7 +131,18 @@ TEST(RegionsContained, side_of_a_point_is_that_of_the_shape) {
         regions::side_of(regions::best_kernels(), body.view, p, *scratch, pace);
     ASSERT_EQ(side, distance < 1 ? regions::Side::inside : regions::Side::outside) << i;
     inside += side == regions::Side::inside;
+    const bool seen =
+        regions::in_sight(regions::best_kernels(), body.view, last, p, *scratch, pace);
+    if (side != last_side) {
+      EXPECT_FALSE(seen) << i;
+    } else if (side == regions::Side::inside) {
+      EXPECT_TRUE(seen) << i;
+      ++seen_inside;
+    }
+    last = p;
+    last_side = side;
   }
+  EXPECT_GT(seen_inside, 0);
   EXPECT_GT(inside, 30);
 }
 
@@ -165,6 +181,32 @@ TEST(RegionsContained, what_is_before_a_sharp_corner_is_outside) {
       for (const Contact& c : r.contacts) EXPECT_GT(c.distance_m, 0) << body << ' ' << i;
     }
   }
+}
+
+/// A search that ends early may leave the witness on the back of a wall that is thinner than its
+/// interval.
+TEST(RegionsContained, what_is_before_a_thin_wall_is_not_behind_it_while_its_interval_is_open) {
+  const Small small;
+  const BakedBody wall(box(1, 1, 0.02 * kDelta), kRegions);
+  BakedScene scene({small.body.view, wall.view}, {{0, 1}}, settings());
+  const Vec3d at{0.1, 0.2, 0.1 + 0.3 * kDelta};
+  const TickResult before = tick_at(scene, at);
+  ASSERT_GT(before.min_distance_m, 0);
+  regions::QueryMemory& memory = scene.engine->regions;
+  std::uint32_t back = 0;
+  while (regions::normal_of(wall.view.region_triangles[back]).z >= 0) ++back;
+  for (regions::RegionState& state : memory.states) {
+    state.near.count = 0;
+    state.rest = state.lower = static_cast<float>(before.min_distance_m / memory.pairs[0].unit_m);
+    state.witness.b = back;
+  }
+  const Pose poses[2] = {{at, {}}, {}};
+  const TickResult r = tick_or_fail(*scene.engine, poses, {.units = 1});
+  ASSERT_FALSE(r.contacts.empty());
+  EXPECT_GT(r.min_distance_m, before.min_distance_m);
+  EXPECT_GT(r.wrench.force_N.z, 0);
+  tick_at(scene, {0, 0, 2});
+  expect_pushed_out(tick_at(scene, at - Vec3d{0, 0, 0.3 * kDelta + 0.001}), {0, 0, 1});
 }
 
 }  // namespace
