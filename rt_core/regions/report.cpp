@@ -128,8 +128,10 @@ class Report {
     visit_around(b, face, at, [&](const Sector& sector) {
       const double beside = dot(normal, facing(pair, sector.triangle));
       const double angle = angle_of(sector);
-      from_behind = beside < least ? sector.triangle : from_behind;
-      least = beside < least ? beside : least;
+      if (beside < least) {
+        least = beside;
+        from_behind = sector.triangle;
+      }
       angles += angle;
       mean += angle * beside;
     });

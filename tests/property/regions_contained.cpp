@@ -209,5 +209,44 @@ TEST(RegionsContained, what_is_before_a_thin_wall_is_not_behind_it_while_its_int
   expect_pushed_out(tick_at(scene, at - Vec3d{0, 0, 0.3 * kDelta + 0.001}), {0, 0, 1});
 }
 
+/// It may also leave it at a corner that is not the nearest place and that the point sees from
+/// outside, where the mean of the faces tells nothing.
+TEST(RegionsContained, corner_that_is_not_the_nearest_does_not_tell_a_side) {
+  constexpr double kSize = 0.5 * kDelta;
+  constexpr double kGap = 0.2 * kDelta;
+  const BakedBody tool(ball(4, 6, 0.1), kRegions);
+  std::mt19937 rng(3);
+  int told = 0;
+  for (int body = 0; body < 40; ++body) {
+    const Vec3d edges[3] = {kSize * random_unit(rng), kSize * random_unit(rng),
+                            kSize * random_unit(rng)};
+    if (std::abs(dot(cross(edges[0], edges[1]), edges[2])) < 0.01 * kSize * kSize * kSize) continue;
+    const BakedBody splinter(corner_of(edges), kRegions);
+    BakedScene scene({tool.view, splinter.view}, {{0, 1}}, settings());
+    regions::QueryMemory& memory = scene.engine->regions;
+    for (int i = 0; i < 10; ++i) {
+      const Pose poses[2] = {approach(tool.mesh, splinter.mesh, kGap, 1, random_unit(rng),
+                                      turn(3.0 * random_unit(rng))),
+                             {}};
+      for (std::uint32_t face = 0; face < 4; ++face) {
+        tick_or_fail(*scene.engine, poses);
+        for (regions::RegionState& state : memory.states) {
+          state.near.count = 0;
+          state.witness.b = face;
+        }
+        tick_or_fail(*scene.engine, poses, {.units = 1});  // measures them
+        for (regions::RegionState& state : memory.states) {
+          state.rest = state.lower =
+              state.witness.distance - static_cast<float>(0.05 * memory.pairs[0].delta);
+        }
+        const TickResult r = tick_or_fail(*scene.engine, poses, {.units = 1});
+        for (const Contact& c : r.contacts) EXPECT_GT(c.distance_m, 0) << body << ' ' << i;
+        told += static_cast<int>(r.contacts.size());
+      }
+    }
+  }
+  EXPECT_GT(told, 500);
+}
+
 }  // namespace
 }  // namespace palpate::test
