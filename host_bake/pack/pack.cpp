@@ -10,6 +10,7 @@
 #include "host_bake/base/error.hpp"
 #include "host_bake/pack/adjacency.hpp"
 #include "host_bake/pack/patch_normal.hpp"
+#include "host_bake/regions/proximity_cells.hpp"
 #include "rt_core/image/view.hpp"
 
 namespace palpate::bake {
@@ -295,6 +296,13 @@ std::vector<std::byte> pack(const Hierarchy& tree, const Metrics& metrics,
   image.add(image::SectionId::region_nodes, regions.nodes);
   image.add(image::SectionId::region_triangles, linked_to_pieces(regions.triangles, content));
   image.add(image::SectionId::regions, regions.regions);
+  if (!regions.regions.empty()) {
+    const ProximityCells near = proximity_cells(regions.triangles, double(facts.delta_rel));
+    image.add(image::SectionId::proximity_grid, std::vector{near.grid});
+    image.add(image::SectionId::proximity_bricks, near.bricks);
+    image.add(image::SectionId::proximity_cells, near.cells);
+    image.add(image::SectionId::region_runs, regions.runs);
+  }
   return std::move(image).finish();
 }
 

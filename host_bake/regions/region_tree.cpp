@@ -39,6 +39,7 @@ class Builder {
     parallel_for(out_.nodes.size(), [&](std::size_t i) { fit_children(i); });
     measure_regions();
     fill_triangles();
+    find_runs();
     return std::move(out_);
   }
 
@@ -232,6 +233,16 @@ class Builder {
       t.source = order_[i];
     }
     link_neighbours(place);
+  }
+
+  void find_runs() {
+    out_.runs.resize(out_.regions.size());
+    image::RegionRun run{};
+    for (std::uint32_t i = 0; i < region_of_.size(); ++i) {
+      if (i == 0 || region_of_[i] != region_of_[i - 1]) run = {.first = i, .count = 0};
+      ++run.count;
+      if (run.count > out_.runs[region_of_[i]].count) out_.runs[region_of_[i]] = run;
+    }
   }
 
   void link_neighbours(const std::vector<std::uint32_t>& place) {

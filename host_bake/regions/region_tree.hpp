@@ -15,6 +15,7 @@ struct RegionTree {
   std::vector<image::RegionNode> nodes;
   std::vector<image::RegionTriangle> triangles;
   std::vector<image::Region> regions;
+  std::vector<image::RegionRun> runs;  ///< the longest of each region
 };
 
 /// Builds the tree: the mesh is divided into regions and groups (partition.hpp), the binary tree is

@@ -112,6 +112,13 @@ class Meter {
     const double in_time = time / static_cast<double>(query_ns);
     return in_time < units ? in_time : units;
   }
+  /// The same of the whole budget's time, for which no clock is read.
+  [[nodiscard]] double queries_in_all(std::uint64_t query_ns) const noexcept {
+    const double units = queries_affordable(0);
+    if (budget_.clock_ns == nullptr) return units;
+    const double in_time = 2 * static_cast<double>(half_ns()) / static_cast<double>(query_ns);
+    return in_time < units ? in_time : units;
+  }
   /// Since the meter was made; 0 without a clock.
   [[nodiscard]] std::uint64_t elapsed_ns() const noexcept {
     return budget_.clock_ns != nullptr ? now_ns() - start_ns_ : 0;

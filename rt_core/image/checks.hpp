@@ -54,4 +54,8 @@ Status check_capacities(const ImageView& image) noexcept;
 /// image_bad_section, image_bad_tree, image_bad_index, image_bad_float.
 Status check_regions(const ImageView& image) noexcept;
 
+/// What tells where to look first: all four sections or none, and what they name exists.
+/// image_missing_section, image_bad_section, image_bad_float, image_bad_index.
+Status check_proximity(const ImageView& image) noexcept;
+
 }  // namespace palpate::image::checks

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The memory image, format version 1.1: what lies where. docs/FORMAT.md specifies it for readers in
+// The memory image, format version 1.3: what lies where. docs/FORMAT.md specifies it for readers in
 // other languages; this header is its C++ form and the only place that knows the layout.
 //
 // Little-endian; fixed-width types; every section starts on a 64-byte boundary; offsets count bytes
@@ -20,9 +20,10 @@ namespace palpate::image {
 
 inline constexpr std::uint8_t kMagic[8] = {0x89, 'P', 'A', 'L', 'P', '\r', '\n', 0x1a};
 inline constexpr std::uint16_t kFormatMajor = 1;        ///< another major number is refused
-inline constexpr std::uint16_t kFormatMinor = 2;        ///< a newer minor number still loads
+inline constexpr std::uint16_t kFormatMinor = 3;        ///< a newer minor number still loads
 inline constexpr std::uint16_t kPatchNormalsSince = 1;  ///< minor version
 inline constexpr std::uint16_t kSourceDeviationSince = 2;
+inline constexpr std::uint16_t kProximitySince = 3;
 inline constexpr std::uint32_t kByteOrderMark = 0x01020304;
 inline constexpr std::size_t kAlignment = 64;
 inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< "no such index"
@@ -78,7 +79,12 @@ enum class SectionId : std::uint32_t {
   region_nodes = 8,      ///< RegionNode, breadth first
   region_triangles = 9,  ///< RegionTriangle; the source mesh in the order of the leaves
   regions = 10,          ///< Region
-  // 11 to 15 are for later minor versions; they are empty so far.
+  // Where to look first: all four, with those of the regions, or none.
+  proximity_grid = 11,    ///< ProximityGrid; one
+  proximity_bricks = 12,  ///< u32; x fastest
+  proximity_cells = 13,   ///< u32, into region_triangles; kBrickCells a fine brick, x fastest
+  region_runs = 14,       ///< RegionRun; of each region
+  // 15 is for later minor versions; it is empty so far.
 };
 inline constexpr std::size_t kSectionSlots = 16;
 

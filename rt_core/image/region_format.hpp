@@ -59,4 +59,31 @@ struct Region {
 };
 static_assert(sizeof(Region) == 32);
 
+inline constexpr std::uint32_t kBrickEdge = 4;  ///< cells
+inline constexpr std::uint32_t kBrickCells = kBrickEdge * kBrickEdge * kBrickEdge;
+inline constexpr std::uint32_t kCoarseBrick = 0x80000000u;
+inline constexpr std::uint32_t kMaxBricksAcross = 1024;  ///< along each axis
+
+/// A grid of cells about the object, each of which names a triangle that is near its centre: where
+/// to look first for what is near a point. Nothing is proved with it, so that validate() asks only
+/// that what it names exists.
+///
+/// Cells are in bricks of kBrickEdge cubed. A brick near the surface is fine: its number is that of
+/// its first cell in proximity_cells over kBrickCells. Any other is one triangle, plus
+/// kCoarseBrick.
+struct ProximityGrid {
+  float origin[3];          ///< the corner of least coordinates
+  float cell;               ///< edge of a cell, > 0
+  std::uint32_t bricks[3];  ///< along each axis, 1 to kMaxBricksAcross
+  std::uint32_t reserved;
+};
+static_assert(sizeof(ProximityGrid) == 32);
+
+/// Triangles of a region that follow one another: all of them, where its leaves are equally deep.
+struct RegionRun {
+  std::uint32_t first;  ///< into region_triangles
+  std::uint32_t count;  ///< at least 1
+};
+static_assert(sizeof(RegionRun) == 8);
+
 }  // namespace palpate::image

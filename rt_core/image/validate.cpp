@@ -39,6 +39,11 @@ ImageView view_of(std::span<const std::byte> bytes) noexcept {
   view.region_nodes = records<image::RegionNode>(bytes, Id::region_nodes);
   view.region_triangles = records<image::RegionTriangle>(bytes, Id::region_triangles);
   view.regions = records<image::Region>(bytes, Id::regions);
+  const auto grid = records<image::ProximityGrid>(bytes, Id::proximity_grid);
+  view.proximity_grid = grid.empty() ? nullptr : grid.data();
+  view.proximity_bricks = records<std::uint32_t>(bytes, Id::proximity_bricks);
+  view.proximity_cells = records<std::uint32_t>(bytes, Id::proximity_cells);
+  view.region_runs = records<image::RegionRun>(bytes, Id::region_runs);
   return view;
 }
 
@@ -84,7 +89,8 @@ Status validate(std::span<const std::byte> bytes, ImageView& out_view) noexcept 
       image::checks::check_levels,     image::checks::check_pieces,
       image::checks::check_tree,       image::checks::check_indices,
       image::checks::check_vertices,   image::checks::check_level_totals,
-      image::checks::check_capacities, image::checks::check_regions};
+      image::checks::check_capacities, image::checks::check_regions,
+      image::checks::check_proximity};
   const ImageView view = view_of(bytes);
   for (const auto pass : kPasses) {
     if (const Status s = pass(view); s != Status::ok) return s;

@@ -27,6 +27,10 @@ struct ImageView {
   std::span<const image::RegionNode> region_nodes;
   std::span<const image::RegionTriangle> region_triangles;
   std::span<const image::Region> regions;
+  const image::ProximityGrid* proximity_grid = nullptr;  ///< null: the image holds none
+  std::span<const std::uint32_t> proximity_bricks;
+  std::span<const std::uint32_t> proximity_cells;
+  std::span<const image::RegionRun> region_runs;
   std::span<const image::Vertex> culling_vertices;
 };
 

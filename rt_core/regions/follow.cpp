@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/follow.hpp"
 
+#include "rt_core/regions/look.hpp"
 #include "rt_core/regions/pair_batch.hpp"
 
 namespace palpate::regions {
@@ -16,8 +17,20 @@ constexpr double kSeedsClimbed = 0.85;
 constexpr std::uint32_t kWitnessEvery = 6;
 constexpr std::uint32_t kSeedEvery = 2;
 constexpr std::uint32_t kMostDives = 8;  ///< of a region in a tick
+constexpr std::uint32_t kLooks = 8;      ///< of a region at a time, in place of a dive
 /// Regions that begin are as far apart from tick to tick as this; prime.
 constexpr std::uint32_t kStride = 61;
+
+/// Adds the region's next looks to a batch.
+void look_into(Work& work, std::uint32_t index, std::uint32_t count, auto& batch) noexcept {
+  const Active& item = work.active()[index];
+  Seeds& seeds = work.state_of(item).seeds;
+  Witness found[kMostLooks];
+  look(work.frame_of(item), item.region, seeds.dives, count, found);
+  seeds.dives += count;
+  work.pace.charge(count / kLooksPerUnit);
+  for (std::uint32_t k = 0; k < count; ++k) batch.add(index, found[k]);
+}
 
 class Follower {
  public:
@@ -128,6 +141,10 @@ class Follower {
   void dive_into(std::uint32_t index, auto& batch) noexcept {
     const Active& item = work_.active()[index];
     if (!is_open(item)) return;
+    if (can_look(work_.frame_of(item))) {
+      look_into(work_, index, kLooks, batch);
+      return;
+    }
     const Witness found = dive(*work_.memory.kernels, work_.frame_of(item), work_.pace, item.region,
                                work_.state_of(item).seeds.dives++);
     batch.add(index, found);
@@ -140,6 +157,28 @@ class Follower {
 };
 
 }  // namespace
+
+void look_first(Work& work, double units) noexcept {
+  std::uint64_t felt = 0;
+  PairBatch batch(work, [&](std::uint32_t i, const Witness& pair) {
+    const Active& item = work.active()[i];
+    RegionState& state = work.state_of(item);
+    note_seed(*work.frame_of(item).a, pair, state.seeds);
+    const bool was_felt = work.is_felt(item);
+    if (!state.witness.known() || pair.distance < state.witness.distance) state.witness = pair;
+    // Contacts take time, too: no more are sought than can be told.
+    if (!was_felt && work.is_felt(item)) work.meter.expect_contacts(++felt);
+  });
+  const std::uint64_t start = work.pace.used();
+  const std::uint32_t stride = work.count % kStride != 0 ? kStride : 1;
+  for (std::uint32_t k = 0; k < work.count && work.pace.go_on(); ++k) {
+    if (static_cast<double>(work.pace.used() - start) >= units) break;
+    const std::uint32_t i = k * stride % work.count;
+    if (can_look(work.frame_of(work.active()[i]))) look_into(work, i, kMostLooks, batch);
+  }
+  batch.measure_all();
+  work.widen_all();
+}
 
 void follow(Work& work, double units) noexcept {
   if (work.count > 0) Follower(work, units).run();

@@ -4,6 +4,7 @@
 #include "rt_core/base/queue.hpp"
 #include "rt_core/regions/close.hpp"
 #include "rt_core/regions/follow.hpp"
+#include "rt_core/regions/look.hpp"
 
 namespace palpate::regions {
 namespace {
@@ -25,6 +26,12 @@ constexpr std::uint32_t kStepsPerLook = 4;
 constexpr double kManyTicksAfterJump = 5;
 constexpr std::uint32_t kFewAfterJump = 2;
 constexpr double kUnitsToFollow = 16;
+/// What a first search takes is told by those of before, or by so many, which end when they have
+/// taken too much together; then looks take this share of the tick.
+constexpr std::uint32_t kProbes = 3;
+constexpr double kMostLooked = 0.7;
+constexpr double kFewestToLook = 64;
+constexpr double kMostProbed = 1e6;  ///< units a region; no search takes as many
 /// Then following takes this share of what is left, the larger where it brings witnesses nearer
 /// for the same work than searches do: by half as much, for it also keeps them there.
 constexpr double kMostFollow = 0.85;
@@ -45,13 +52,17 @@ struct MoreUrgent {
   }
 };
 
+/// Until ticks have told how long a work unit takes.
+constexpr std::uint64_t kAssumedUnit_ns = 70;
+
 class Narrowing {
  public:
   explicit Narrowing(Work& work) noexcept : work_(work), pursuit_(work.memory.pursuit) {}
 
   void run() noexcept {
     share_tolerance();
-    narrow_widest(work_.demand.limited);
+    if (work_.swept && work_.demand.limited && work_.count > 0) look_where_far_to_go();
+    if (!lags_) narrow_widest(work_.demand.limited);
     if (lags_) {
       work_.followed = true;
       follow_witnesses();
@@ -143,6 +154,35 @@ class Narrowing {
                                           by_search.gain * by_follow.units);
     follow(work_, (better ? kMostFollow : kLeastFollow) * units);
     work_.widen_all();
+  }
+
+  /// After a jump, where the searches of all that may be near would take many times what the tick
+  /// has: what is near is looked up, so that a tick in contact feels some of everywhere.
+  void look_where_far_to_go() noexcept {
+    if (!work_.pace.go_on()) return;
+    const std::uint64_t unit_ns = pursuit_.unit_ns > 0 ? pursuit_.unit_ns : kAssumedUnit_ns;
+    const double units = work_.meter.queries_in_all(unit_ns);
+    const double each = kManyTicksAfterJump * units / work_.count;
+    if (units < kFewestToLook || each > kMostProbed || !can_look(work_.frame_of(work_.active()[0])))
+      return;
+    lags_ = pursuit_.searches >= kFewSearches ? pursuit_.search_units > each : are_long(each);
+    lags_ = lags_ && work_.pace.go_on();
+    if (lags_) look_first(work_, kMostLooked * units);
+  }
+
+  /// Whether searches take more than so many units, of a few that lie apart.
+  bool are_long(double units) noexcept {
+    const std::uint32_t probes = kProbes < work_.count ? kProbes : work_.count;
+    const auto most = static_cast<std::uint64_t>(units * probes);
+    const std::uint64_t before = work_.pace.used();
+    work_.pace.limit(most);
+    for (std::uint32_t k = 0; k < probes; ++k) {
+      Active& item = work_.active()[k * (work_.count / probes)];
+      close(work_, item, share_of(item));
+    }
+    work_.pace.no_limit();
+    work_.truncated = !work_.pace.go_on();
+    return work_.pace.used() - before >= most;
   }
 
   /// Regions of which a part not looked at may cross the other body by now.

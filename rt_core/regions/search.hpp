@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "rt_core/base/meter.hpp"
 #include "rt_core/regions/crossing_list.hpp"
@@ -57,6 +58,9 @@ class Pace {
     next_reading_ = meter_.used() + units;
     time_ended_ = false;
   }
+  /// go_on() is false after so many units from now on, too, until this is asked again.
+  void limit(std::uint64_t units) noexcept { limit_ = meter_.used() + units; }
+  void no_limit() noexcept { limit_ = std::numeric_limits<std::uint64_t>::max(); }
   /// Once more is to be had.
   void resume() noexcept {
     units_ended_ = time_ended_ = false;
@@ -64,7 +68,7 @@ class Pace {
   }
   /// False from the moment at which the budget is used up.
   [[nodiscard]] bool go_on() noexcept {
-    if (units_ended_ || time_ended_) return false;
+    if (units_ended_ || time_ended_ || meter_.used() >= limit_) return false;
     units_ended_ = meter_.out_of_units();
     if (meter_.used() >= next_reading_) {
       next_reading_ = meter_.used() + kUnitsPerReading;
@@ -79,6 +83,7 @@ class Pace {
  private:
   Meter& meter_;
   std::uint64_t next_reading_ = 0;
+  std::uint64_t limit_ = std::numeric_limits<std::uint64_t>::max();
   bool units_ended_ = false;
   bool time_ended_ = false;
 };

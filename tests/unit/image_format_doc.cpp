@@ -124,12 +124,23 @@ TEST(FormatPage, Section_and_its_slots_are_those_of_the_header) {
       sizeof(image::Level),          sizeof(image::Piece),  sizeof(image::Vertex),
       sizeof(std::uint32_t),         sizeof(std::uint32_t), sizeof(image::Triangle),
       sizeof(image::VirtualFace),    sizeof(image::Vertex), sizeof(image::RegionNode),
-      sizeof(image::RegionTriangle), sizeof(image::Region)};
+      sizeof(image::RegionTriangle), sizeof(image::Region), sizeof(image::ProximityGrid),
+      sizeof(std::uint32_t),         sizeof(std::uint32_t), sizeof(image::RegionRun)};
   std::vector<std::size_t> found;
   for (const auto& row : rows_of("## 3. Sections")) {
     if (row.size() == 4) found.push_back(std::stoul(row[2]));
   }
   EXPECT_EQ(found, strides);
+}
+
+TEST(FormatPage, Proximity_grid_and_runs_are_the_structs) {
+  using G = image::ProximityGrid;
+  const std::vector<Field> grid = {PALPATE_FIELD(G, origin), PALPATE_FIELD(G, cell),
+                                   PALPATE_FIELD(G, bricks), PALPATE_FIELD(G, reserved)};
+  EXPECT_EQ(fields_of("### ProximityGrid"), grid);
+  using R = image::RegionRun;
+  const std::vector<Field> run = {PALPATE_FIELD(R, first), PALPATE_FIELD(R, count)};
+  EXPECT_EQ(fields_of("### RegionRun"), run);
 }
 
 TEST(FormatPage, Level_is_the_struct) {

@@ -188,7 +188,7 @@ TEST(Validate, NewerMinorVersion_with_a_further_section_loads) {
   AlignedBytes bytes = seal(rich_parts());
   image::Header header;
   std::memcpy(&header, bytes.data(), sizeof(header));
-  header.sections[11] = {bytes.size(), 5, 12};
+  header.sections[15] = {bytes.size(), 5, 12};
   bytes.resize(bytes.size() + 64);
   header.total_bytes = bytes.size();
   std::memcpy(bytes.data(), &header, sizeof(header));

@@ -38,6 +38,10 @@ class Damaged {
   image::RegionTriangle* triangles() {
     return section<image::RegionTriangle>(SectionId::region_triangles);
   }
+  image::ProximityGrid& grid() { return *section<image::ProximityGrid>(SectionId::proximity_grid); }
+  std::uint32_t* bricks() { return section<std::uint32_t>(SectionId::proximity_bricks); }
+  std::uint32_t* cells() { return section<std::uint32_t>(SectionId::proximity_cells); }
+  image::RegionRun* runs() { return section<image::RegionRun>(SectionId::region_runs); }
   image::Region* regions() { return section<image::Region>(SectionId::regions); }
 
   Status check(ImageView& out) {
@@ -98,6 +102,22 @@ TEST(RegionImage, Damage_of_every_kind_is_refused_by_name) {
        [](Damaged& d) { d.triangles()[0].source = d.header().source_triangles; }},
       {"other region of a triangle", Status::image_bad_index,
        [](Damaged& d) { ++d.triangles()[0].region; }},
+      {"cells of no size", Status::image_bad_float, [](Damaged& d) { d.grid().cell = 0; }},
+      {"grid nowhere", Status::image_bad_float,
+       [](Damaged& d) { d.grid().origin[1] = std::numeric_limits<float>::quiet_NaN(); }},
+      {"bricks not counted", Status::image_bad_section, [](Damaged& d) { ++d.grid().bricks[2]; }},
+      {"endless bricks", Status::image_bad_section,
+       [](Damaged& d) { d.grid().bricks[0] = 1u << 31; }},
+      {"reserved field of the grid used", Status::image_bad_section,
+       [](Damaged& d) { d.grid().reserved = 1; }},
+      {"cell of no triangle", Status::image_bad_index,
+       [](Damaged& d) { d.cells()[5] = d.header().source_triangles; }},
+      {"brick of no triangle", Status::image_bad_index,
+       [](Damaged& d) { d.bricks()[0] = image::kCoarseBrick | d.header().source_triangles; }},
+      {"brick of no cells", Status::image_bad_index, [](Damaged& d) { d.bricks()[0] = 77777; }},
+      {"run of another region", Status::image_bad_index, [](Damaged& d) { d.runs()[1].first = 0; }},
+      {"run without an end", Status::image_bad_index, [](Damaged& d) { d.runs()[0].count = ~0u; }},
+      {"empty run", Status::image_bad_index, [](Damaged& d) { d.runs()[0].count = 0; }},
       {"reserved field used", Status::image_bad_section,
        [](Damaged& d) { d.nodes()[3].reserved[2] = 1; }},
   };

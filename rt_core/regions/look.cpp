@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/look.hpp"
+
+#include "rt_core/base/assert.hpp"
+
+namespace palpate::regions {
+namespace {
+
+struct Point {
+  float x, y, z;
+};
+
+Point centre_of(const image::RegionTriangle& t) noexcept {
+  constexpr float kThird = 1.0f / 3;
+  const float* c = t.corners;
+  return {kThird * (c[0] + c[3] + c[6]), kThird * (c[1] + c[4] + c[7]),
+          kThird * (c[2] + c[5] + c[8])};
+}
+
+Point mapped(const Transform& m, Point p) noexcept {
+  const float* r = m.rotation;
+  return {m.scale * (r[0] * p.x + r[1] * p.y + r[2] * p.z) + m.translation[0],
+          m.scale * (r[3] * p.x + r[4] * p.y + r[5] * p.z) + m.translation[1],
+          m.scale * (r[6] * p.x + r[7] * p.y + r[8] * p.z) + m.translation[2]};
+}
+
+/// Of `cells` along an axis; what lies outside is in the outermost one.
+std::uint32_t cell_at(float along, float per_length, std::uint32_t cells) noexcept {
+  const float at = along * per_length;
+  const auto last = static_cast<float>(cells - 1);
+  return at > 0 ? static_cast<std::uint32_t>(at < last ? at : last) : 0;
+}
+
+/// Where the triangle near a point is kept.
+const std::uint32_t* place_of(const ImageView& image, Point p) noexcept {
+  using image::kBrickEdge;
+  const image::ProximityGrid& grid = *image.proximity_grid;
+  const float per_length = 1 / grid.cell;
+  const std::uint32_t x = cell_at(p.x - grid.origin[0], per_length, grid.bricks[0] * kBrickEdge);
+  const std::uint32_t y = cell_at(p.y - grid.origin[1], per_length, grid.bricks[1] * kBrickEdge);
+  const std::uint32_t z = cell_at(p.z - grid.origin[2], per_length, grid.bricks[2] * kBrickEdge);
+  const std::uint32_t brick =
+      (z / kBrickEdge * grid.bricks[1] + y / kBrickEdge) * grid.bricks[0] + x / kBrickEdge;
+  const std::uint32_t* const kept = &image.proximity_bricks[brick];
+  if ((*kept & image::kCoarseBrick) != 0) return kept;
+  const std::uint32_t in_brick =
+      (z % kBrickEdge * kBrickEdge + y % kBrickEdge) * kBrickEdge + x % kBrickEdge;
+  return &image.proximity_cells[std::size_t{*kept} * image::kBrickCells + in_brick];
+}
+
+/// The run is passed through in steps of its golden section, so that any number of looks in a row
+/// is spread over it: neighbours in it are neighbours on the surface.
+std::uint32_t triangle_of(const image::RegionRun& run, std::uint32_t look) noexcept {
+  constexpr std::uint32_t kGolden = 0x9e3779b1u;
+  const std::uint64_t part = look * kGolden + kGolden / 2;
+  return run.first + static_cast<std::uint32_t>((part & 0xffffffffu) * run.count >> 32);
+}
+
+}  // namespace
+
+void look(const PairFrame& frame, std::uint32_t region, std::uint32_t from, std::uint32_t count,
+          Witness (&out)[kMostLooks]) noexcept {
+  PALPATE_ASSERT(count <= kMostLooks && can_look(frame));
+  // Each pass asks for what the next one reads.
+  const image::RegionRun& run = frame.a->region_runs[region];
+  for (std::uint32_t i = 0; i < count; ++i) {
+    out[i] = {triangle_of(run, from + i), 0, 0};
+    __builtin_prefetch(&frame.a->region_triangles[out[i].a]);
+  }
+  const std::uint32_t* places[kMostLooks];
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Point centre = centre_of(frame.a->region_triangles[out[i].a]);
+    places[i] = place_of(*frame.b, mapped(frame.a_to_b, centre));
+    __builtin_prefetch(places[i]);
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    out[i].b = *places[i] & ~image::kCoarseBrick;
+    __builtin_prefetch(&frame.b->region_triangles[out[i].b]);
+  }
+}
+
+}  // namespace palpate::regions

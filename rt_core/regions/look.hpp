@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs of triangles that may be near, by looking up where a region's triangles lie about b.
+#pragma once
+
+#include <cstdint>
+
+#include "rt_core/regions/near_pairs.hpp"
+#include "rt_core/regions/pair_frame.hpp"
+
+namespace palpate::regions {
+
+/// In one call, at most.
+inline constexpr std::uint32_t kMostLooks = 16;
+/// So many looks count as one work unit, beside what it takes to measure what they find.
+inline constexpr std::uint32_t kLooksPerUnit = 4;
+
+/// Whether b's image says what is near a place, and a's which triangles are a region's.
+inline bool can_look(const PairFrame& frame) noexcept {
+  return frame.b->proximity_grid != nullptr && !frame.a->region_runs.empty();
+}
+
+/// Triangles of a region, spread over it, each with the triangle of b that b's proximity grid names
+/// where its centre lies (closest point transforms: Mauch 2000). Their distances are not measured.
+///
+/// A look takes three reads of memory and no arithmetic to speak of, where a dive into both trees
+/// takes seven work units; and it finds what is near as the grid's cells are fine.
+/// @param from   number of the first look; those that follow each other lie apart
+/// @param count  at most kMostLooks
+/// @param out    their distances are 0
+/// Precondition: can_look(frame). O(count)
+void look(const PairFrame& frame, std::uint32_t region, std::uint32_t from, std::uint32_t count,
+          Witness (&out)[kMostLooks]) noexcept;
+
+}  // namespace palpate::regions

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is looked up: near what lies there, spread over a region, within the image.
+#include "rt_core/regions/look.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "rt_core/regions/pair_frame.hpp"
+#include "tests/support/baked_scene.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace palpate::test {
+namespace {
+
+const BakedBody& ball() {
+  static const BakedBody body(bumpy_ball(40, 60, 1), bake::ForEngine::regions);
+  return body;
+}
+
+/// Both lie in one place.
+regions::PairFrame coincident(const ImageView& view) {
+  regions::PairFrame frame;
+  frame.a = frame.b = &view;
+  frame.a_to_b = frame.b_to_a = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}, 1};
+  return frame;
+}
+
+Vec3d centre_of(const image::RegionTriangle& t) {
+  Vec3d sum{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    sum +=
+        Vec3d{double(t.corners[3 * c]), double(t.corners[3 * c + 1]), double(t.corners[3 * c + 2])};
+  }
+  return (1.0 / 3) * sum;
+}
+
+TEST(RegionLook, What_is_found_is_a_cell_away_at_most) {
+  const ImageView& view = ball().view;
+  ASSERT_NE(view.proximity_grid, nullptr);
+  const regions::PairFrame frame = coincident(view);
+  ASSERT_TRUE(regions::can_look(frame));
+  double longest = 0;  // from a triangle's centre to a corner
+  for (const image::RegionTriangle& t : view.region_triangles) {
+    const Vec3d corner{double(t.corners[0]), double(t.corners[1]), double(t.corners[2])};
+    longest = std::max(longest, norm(centre_of(t) - corner));
+  }
+  // To the centre of the cell and from there to a triangle that is no farther than the one that
+  // was looked from; to the centre of that.
+  const double most = std::sqrt(3.0) * double(view.proximity_grid->cell) + 2 * longest;
+  for (std::uint32_t region = 0; region < view.regions.size(); ++region) {
+    regions::Witness found[regions::kMostLooks];
+    regions::look(frame, region, 3, regions::kMostLooks, found);
+    for (const regions::Witness& pair : found) {
+      EXPECT_EQ(view.region_triangles[pair.a].region, region);
+      EXPECT_LE(
+          norm(centre_of(view.region_triangles[pair.a]) - centre_of(view.region_triangles[pair.b])),
+          most);
+    }
+  }
+}
+
+TEST(RegionLook, Looks_in_a_row_are_of_different_triangles) {
+  const ImageView& view = ball().view;
+  const regions::PairFrame frame = coincident(view);
+  for (std::uint32_t region = 0; region < view.regions.size(); ++region) {
+    const std::uint32_t triangles = view.region_runs[region].count;
+    const std::uint32_t count = std::min(triangles / 2, regions::kMostLooks);
+    for (const std::uint32_t from : {0u, 5u, 0xfffffff8u}) {
+      regions::Witness found[regions::kMostLooks];
+      regions::look(frame, region, from, count, found);
+      std::set<std::uint32_t> seen;
+      for (std::uint32_t i = 0; i < count; ++i) seen.insert(found[i].a);
+      EXPECT_EQ(seen.size(), count) << "region " << region << " of " << triangles;
+    }
+  }
+}
+
+TEST(RegionLook, Far_outside_something_is_named) {
+  const ImageView& view = ball().view;
+  regions::PairFrame frame = coincident(view);
+  for (const float away : {-1e6f, -3.0f, 3.0f, 1e6f, 1e30f}) {
+    std::fill_n(frame.a_to_b.translation, 3, away);
+    regions::Witness found[regions::kMostLooks];
+    regions::look(frame, 0, 0, regions::kMostLooks, found);
+    for (const regions::Witness& pair : found) EXPECT_LT(pair.b, view.region_triangles.size());
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test
