@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/narrow.hpp"
 
+#include <limits>
+
 #include "rt_core/base/queue.hpp"
 #include "rt_core/regions/close.hpp"
 #include "rt_core/regions/follow.hpp"
@@ -30,6 +32,11 @@ constexpr double kUnitsToFollow = 16;
 /// taken too much together; then looks take this share of the tick.
 constexpr std::uint32_t kProbes = 3;
 constexpr double kMostLooked = 0.7;
+/// Where they would take fewer ticks, this share, and searches the rest; unless only a small part
+/// of what may be near is felt, which searches tell sooner.
+constexpr double kSeveralTicksAfterJump = 2;
+constexpr double kSomeLooked = 0.4;
+constexpr double kLeastFelt = 0.25;
 constexpr double kFewestToLook = 64;
 constexpr double kMostProbed = 1e6;  ///< units a region; no search takes as many
 /// Then following takes this share of what is left, the larger where it brings witnesses nearer
@@ -156,33 +163,43 @@ class Narrowing {
     work_.widen_all();
   }
 
-  /// After a jump, where the searches of all that may be near would take many times what the tick
-  /// has: what is near is looked up, so that a tick in contact feels some of everywhere.
+  /// After a jump, where the searches of all that may be near would take several times what the
+  /// tick has: what is near is looked up, so that a tick in contact feels some of everywhere.
   void look_where_far_to_go() noexcept {
     if (!work_.pace.go_on()) return;
     const std::uint64_t unit_ns = pursuit_.unit_ns > 0 ? pursuit_.unit_ns : kAssumedUnit_ns;
     const double units = work_.meter.queries_in_all(unit_ns);
-    const double each = kManyTicksAfterJump * units / work_.count;
+    const double each = units / work_.count;
     if (units < kFewestToLook || each > kMostProbed || !can_look(work_.frame_of(work_.active()[0])))
       return;
-    lags_ = pursuit_.searches >= kFewSearches ? pursuit_.search_units > each : are_long(each);
-    lags_ = lags_ && work_.pace.go_on();
-    if (lags_) look_first(work_, kMostLooked * units);
+    const double ticks = pursuit_.searches >= kFewSearches
+                             ? pursuit_.search_units / each
+                             : probed(kManyTicksAfterJump * each) / each;
+    if (!work_.pace.go_on()) return;
+    lags_ = ticks >= kManyTicksAfterJump;
+    if (lags_) {
+      look_first(work_, kMostLooked * units, 0);
+    } else if (ticks >= kSeveralTicksAfterJump) {
+      look_first(work_, kSomeLooked * units, kLeastFelt);
+    }
   }
 
-  /// Whether searches take more than so many units, of a few that lie apart.
-  bool are_long(double units) noexcept {
+  /// Work units that a search takes, of a few that lie apart; infinite where they take
+  /// more than `most`.
+  double probed(double most) noexcept {
     const std::uint32_t probes = kProbes < work_.count ? kProbes : work_.count;
-    const auto most = static_cast<std::uint64_t>(units * probes);
     const std::uint64_t before = work_.pace.used();
-    work_.pace.limit(most);
+    const auto limit = static_cast<std::uint64_t>(most * probes);
+    work_.pace.limit(limit);
     for (std::uint32_t k = 0; k < probes; ++k) {
       Active& item = work_.active()[k * (work_.count / probes)];
       close(work_, item, share_of(item));
     }
     work_.pace.no_limit();
     work_.truncated = !work_.pace.go_on();
-    return work_.pace.used() - before >= most;
+    const std::uint64_t used = work_.pace.used() - before;
+    return used < limit ? static_cast<double>(used) / probes
+                        : std::numeric_limits<double>::infinity();
   }
 
   /// Regions of which a part not looked at may cross the other body by now.

@@ -173,6 +173,25 @@ TEST(RegionsFollow, a_part_of_the_contacts_tells_the_force_where_there_is_no_tim
   EXPECT_EQ(all.contacts.size(), truth.contacts.size());
 }
 
+TEST(RegionsFollow, ticks_after_a_jump_feel_some_of_everywhere) {
+  for (const std::uint32_t units : {1000u, 2000u, 4000u}) {
+    double peak = 0;
+    double squared = 0;
+    constexpr int kPoses = 8;
+    for (int k = 0; k < kPoses; ++k) {
+      BakedScene exact = scene();
+      BakedScene cut = scene();
+      const Vec3d force = tick_at(exact, 7 * k).wrench.force_N;
+      const Vec3d felt = tick_at(cut, 7 * k, {.units = units}).wrench.force_N;
+      peak = std::max(peak, norm(force));
+      squared += squared_norm(felt - force);
+    }
+    EXPECT_LT(std::sqrt(squared / kPoses) / peak, 0.2) << units << " units";
+    RecordProperty("error_" + std::to_string(units),
+                   std::to_string(std::sqrt(squared / kPoses) / peak));
+  }
+}
+
 TEST(RegionsFollow, a_copy_goes_on_with_the_same_bits) {
   BakedScene one = scene();
   for (int i = 0; i < kTicks; ++i) tick_at(one, i, {.units = 1000});
