@@ -38,6 +38,7 @@ class Builder {
     count_regions();
     parallel_for(out_.nodes.size(), [&](std::size_t i) { fit_children(i); });
     measure_regions();
+    rank_regions();
     fill_triangles();
     find_runs();
     return std::move(out_);
@@ -84,7 +85,7 @@ class Builder {
     if (from.region) {
       node.region = static_cast<std::uint32_t>(out_.regions.size());
       out_.regions.push_back(
-          {.parent = parent, .slot = slot, .reach = 0, .radius = 0, .reserved = {}});
+          {.parent = parent, .slot = slot, .reach = 0, .radius = 0, .rank = 0, .reserved = {}});
     }
     node.leaf = Partition::is_group(from) ? 1 : 0;
     out_.nodes.push_back(node);
@@ -215,6 +216,27 @@ class Builder {
       image::Region& r = out_.regions[region_of_[i]];
       for (std::size_t c = 0; c < 3; ++c)
         r.reach = std::max(r.reach, above(norm(point(order_[i], c))));
+    }
+  }
+
+  Vec3d centre_of(const image::Region& r) const {
+    const image::RegionNode& node = out_.nodes[r.parent];
+    return {double(node.centre[0][r.slot]), double(node.centre[1][r.slot]),
+            double(node.centre[2][r.slot])};
+  }
+
+  /// Each next is the one whose centre is farthest from those of all before it (Gonzalez 1985).
+  void rank_regions() {
+    std::vector<double> squared(out_.regions.size(), std::numeric_limits<double>::max());
+    std::size_t next = 0;
+    for (std::uint32_t rank = 0; rank < out_.regions.size(); ++rank) {
+      out_.regions[next].rank = rank;
+      const Vec3d from = centre_of(out_.regions[next]);
+      squared[next] = -1;
+      for (std::size_t i = 0; i < squared.size(); ++i) {
+        squared[i] = std::min(squared[i], squared_norm(centre_of(out_.regions[i]) - from));
+      }
+      next = std::size_t(std::max_element(squared.begin(), squared.end()) - squared.begin());
     }
   }
 

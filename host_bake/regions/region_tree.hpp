@@ -24,7 +24,8 @@ struct RegionTree {
 /// box.
 ///
 /// RegionTriangle::piece is left kNone: pack() knows the image's pieces. Deterministic, also across
-/// numbers of threads. Throws InputRefused where a limit of the format is passed. O(n log^2 n).
+/// numbers of threads. Throws InputRefused where a limit of the format is passed. O(n log^2 n), and
+/// the square of the number of regions.
 RegionTree build_regions(const NormalMesh& mesh, const RegionOptions& options);
 
 }  // namespace palpate::bake

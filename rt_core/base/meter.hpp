@@ -20,11 +20,11 @@ inline void follow(std::uint64_t& time_ns, std::uint64_t now_ns) noexcept {
 /// How long the tail of a tick takes for each of its contacts, learnt from ticks.
 class TailTime {
  public:
-  /// Of a whole tail; a quarter more than it took, since it wavers. 0: nothing learnt yet.
+  /// Of a whole tail; a quarter more than it took, since it wavers.
   [[nodiscard]] std::uint64_t expected_ns(std::uint64_t contacts) const noexcept {
     return contact_ns_ * (contacts + kFixed) * 5 / 4;
   }
-  /// How many contacts a tail of this time does for; infinitely many where nothing is learnt yet.
+  /// How many contacts a tail of this time does for; infinitely many where they take none.
   [[nodiscard]] double contacts_in(std::uint64_t tail_ns) const noexcept {
     if (contact_ns_ == 0) return std::numeric_limits<double>::infinity();
     return static_cast<double>(tail_ns) / static_cast<double>(contact_ns_) -
@@ -36,7 +36,9 @@ class TailTime {
 
  private:
   static constexpr std::uint64_t kFixed = 4;  ///< what a tail takes beside, in contacts
-  std::uint64_t contact_ns_ = 0;
+  /// Until ticks have told; what desktop processors take.
+  static constexpr std::uint64_t kAssumed_ns = 400;
+  std::uint64_t contact_ns_ = kAssumed_ns;
 };
 
 /// The clock is read before every query: it is handed in and cheap (a cycle counter, a vDSO call).

@@ -222,6 +222,15 @@ bool records_clear(const ImageView& image) noexcept {
   return bits == 0;
 }
 
+bool ranks_sound(const ImageView& image) noexcept {
+  const bool ranked = image.header->format_minor >= kRanksSince;
+  const std::size_t ranks = ranked ? image.regions.size() : 1;
+  for (const Region& region : image.regions) {
+    if (region.rank >= ranks) return false;
+  }
+  return true;
+}
+
 bool lengths_sound(const ImageView& image) noexcept {
   for (const Region& region : image.regions) {
     if (!within(region.reach, 0.0f, kMaxNorm) || !within(region.radius, 0.0f, kMaxLength)) {
@@ -246,6 +255,7 @@ Status check_regions(const ImageView& image) noexcept {
   if (!runs_tile(image) || !parents_agree(image) || !regions_sound(image)) {
     return Status::image_bad_tree;
   }
+  if (!ranks_sound(image)) return Status::image_bad_index;
   if (!lengths_sound(image)) return Status::image_bad_float;
   for (const RegionNode& node : image.region_nodes) {
     if (!boxes_sound(node)) return Status::image_bad_float;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/follow.hpp"
 
-#include "rt_core/regions/look.hpp"
+#include "rt_core/regions/look_into.hpp"
 #include "rt_core/regions/pair_batch.hpp"
 
 namespace palpate::regions {
@@ -18,26 +18,8 @@ constexpr std::uint32_t kWitnessEvery = 6;
 constexpr std::uint32_t kSeedEvery = 2;
 constexpr std::uint32_t kMostDives = 8;  ///< of a region in a tick
 constexpr std::uint32_t kLooks = 8;      ///< of a region at a time, in place of a dive
-/// First looks of a region: as many as there is time for, for all regions or, where they are more,
-/// for a sample that tells their force as well (crowd.cpp, kTelling). Fewer meet nothing near.
-constexpr double kSample = 128;
-constexpr double kFewestLooks = 4;
-/// So many regions tell how many are felt.
-constexpr std::uint32_t kFirstRegions = 12;
-constexpr double kUnitsPerLook = 1.0 / kLooksPerUnit + static_cast<double>(kBatchUnits) / kBatch;
 /// Regions that begin are as far apart from tick to tick as this; prime.
 constexpr std::uint32_t kStride = 61;
-
-/// Adds the region's next looks to a batch.
-void look_into(Work& work, std::uint32_t index, std::uint32_t count, auto& batch) noexcept {
-  const Active& item = work.active()[index];
-  Seeds& seeds = work.state_of(item).seeds;
-  Witness found[kMostLooks];
-  look(work.frame_of(item), item.region, seeds.dives, count, found);
-  seeds.dives += count;
-  work.pace.charge(count / kLooksPerUnit);
-  for (std::uint32_t k = 0; k < count; ++k) batch.add(index, found[k]);
-}
 
 class Follower {
  public:
@@ -164,36 +146,6 @@ class Follower {
 };
 
 }  // namespace
-
-void look_first(Work& work, double units, double least_felt) noexcept {
-  std::uint64_t felt = 0;
-  PairBatch batch(work, [&](std::uint32_t i, const Witness& pair) {
-    const Active& item = work.active()[i];
-    RegionState& state = work.state_of(item);
-    note_seed(*work.frame_of(item).a, pair, state.seeds);
-    const bool was_felt = work.is_felt(item);
-    if (!state.witness.known() || pair.distance < state.witness.distance) state.witness = pair;
-    // Contacts take time, too: no more are sought than can be told.
-    if (!was_felt && work.is_felt(item)) work.meter.expect_contacts(++felt);
-  });
-  const double regions = work.count < kSample ? work.count : kSample;
-  // A fraction, so that a little more time does not mean that fewer regions are seen.
-  const double most = units / (regions * kUnitsPerLook);
-  const double each = most < kFewestLooks ? kFewestLooks : most < kMostLooks ? most : kMostLooks;
-  const std::uint64_t start = work.pace.used();
-  const std::uint32_t stride = work.count % kStride != 0 ? kStride : 1;
-  for (std::uint32_t k = 0; k < work.count && work.pace.go_on(); ++k) {
-    if (static_cast<double>(work.pace.used() - start) >= units) break;
-    if (k == kFirstRegions) batch.measure_all();
-    if (k == kFirstRegions && static_cast<double>(felt) < least_felt * k) break;
-    const std::uint32_t i = k * stride % work.count;
-    const std::uint32_t looks =
-        static_cast<std::uint32_t>((k + 1) * each) - static_cast<std::uint32_t>(k * each);
-    if (can_look(work.frame_of(work.active()[i]))) look_into(work, i, looks, batch);
-  }
-  batch.measure_all();
-  work.widen_all();
-}
 
 void follow(Work& work, double units) noexcept {
   if (work.count > 0) Follower(work, units).run();

@@ -6,14 +6,6 @@
 
 namespace palpate::regions {
 
-/// A first witness for regions that nothing is known of: the nearest of four to kMostLooks
-/// (look.hpp), as many as the units do for. One region comes after the other, and neighbours lie
-/// apart, so that what ends early has seen some of everywhere. Where images cannot be looked up in,
-/// nothing.
-/// @param units       work units to be used, at most, to a batch
-/// @param least_felt  nothing more is looked up where a smaller part of the first regions is felt
-void look_first(Work& work, double units, double least_felt) noexcept;
-
 /// Moves witnesses of the active regions to nearer pairs, where one is known already and its
 /// region is open. In this order, each with a share of the units, and what ends early begins at
 /// another region in the next tick: seeds that may be nearer than the witness are measured; every

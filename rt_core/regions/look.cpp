@@ -56,15 +56,9 @@ std::uint32_t triangle_of(const image::RegionRun& run, std::uint32_t look) noexc
   return run.first + static_cast<std::uint32_t>((part & 0xffffffffu) * run.count >> 32);
 }
 
-}  // namespace
-
-void look(const PairFrame& frame, std::uint32_t region, std::uint32_t from, std::uint32_t count,
-          Witness (&out)[kMostLooks]) noexcept {
-  PALPATE_ASSERT(count <= kMostLooks && can_look(frame));
-  // Each pass asks for what the next one reads.
-  const image::RegionRun& run = frame.a->region_runs[region];
+/// Names what is near `count` triangles of a. Each pass asks for what the next one reads.
+void find_near(const PairFrame& frame, std::uint32_t count, Witness (&out)[kMostLooks]) noexcept {
   for (std::uint32_t i = 0; i < count; ++i) {
-    out[i] = {triangle_of(run, from + i), 0, 0};
     __builtin_prefetch(&frame.a->region_triangles[out[i].a]);
   }
   const std::uint32_t* places[kMostLooks];
@@ -77,6 +71,30 @@ void look(const PairFrame& frame, std::uint32_t region, std::uint32_t from, std:
     out[i].b = *places[i] & ~image::kCoarseBrick;
     __builtin_prefetch(&frame.b->region_triangles[out[i].b]);
   }
+}
+
+}  // namespace
+
+void look(const PairFrame& frame, std::uint32_t region, std::uint32_t from, std::uint32_t count,
+          Witness (&out)[kMostLooks]) noexcept {
+  PALPATE_ASSERT(count <= kMostLooks && can_look(frame));
+  const image::RegionRun& run = frame.a->region_runs[region];
+  for (std::uint32_t i = 0; i < count; ++i) out[i] = {triangle_of(run, from + i), 0, 0};
+  find_near(frame, count, out);
+}
+
+std::uint32_t look_beside(const PairFrame& frame, std::uint32_t region, std::uint32_t triangle,
+                          std::uint32_t count, Witness (&out)[kMostLooks]) noexcept {
+  PALPATE_ASSERT(count <= kMostLooks && can_look(frame));
+  const image::RegionRun& run = frame.a->region_runs[region];
+  const std::uint32_t before = triangle > run.first + count / 2 ? triangle - count / 2 : run.first;
+  const std::uint32_t end = run.first + run.count;
+  std::uint32_t found = 0;
+  for (std::uint32_t t = before; t < end && found < count; ++t) {
+    if (t != triangle) out[found++] = {t, 0, 0};
+  }
+  find_near(frame, found, out);
+  return found;
 }
 
 }  // namespace palpate::regions

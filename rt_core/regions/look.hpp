@@ -31,4 +31,12 @@ inline bool can_look(const PairFrame& frame) noexcept {
 void look(const PairFrame& frame, std::uint32_t region, std::uint32_t from, std::uint32_t count,
           Witness (&out)[kMostLooks]) noexcept;
 
+/// The same from the triangles on both sides of one of the region's: neighbours in a run are
+/// neighbours on the surface.
+/// @param triangle  of a, not looked from itself
+/// @param count     at most kMostLooks
+/// @return how many there are: fewer than `count` where the region has no more
+std::uint32_t look_beside(const PairFrame& frame, std::uint32_t region, std::uint32_t triangle,
+                          std::uint32_t count, Witness (&out)[kMostLooks]) noexcept;
+
 }  // namespace palpate::regions

@@ -7,6 +7,7 @@
 #include "rt_core/regions/close.hpp"
 #include "rt_core/regions/follow.hpp"
 #include "rt_core/regions/look.hpp"
+#include "rt_core/regions/survey.hpp"
 
 namespace palpate::regions {
 namespace {
@@ -28,16 +29,13 @@ constexpr std::uint32_t kStepsPerLook = 4;
 constexpr double kManyTicksAfterJump = 5;
 constexpr std::uint32_t kFewAfterJump = 2;
 constexpr double kUnitsToFollow = 16;
-/// What a first search takes is told by those of before, or by so many, which end when they have
-/// taken too much together; then looks take this share of the tick.
+/// Where images can be looked up in, a survey takes the place of following, from so many ticks on
+/// and with this share of one. What a first search takes is told by those of before, or by a few,
+/// which end when they have taken too much together.
+constexpr double kTicksToSurvey = 2.5;
 constexpr std::uint32_t kProbes = 3;
-constexpr double kMostLooked = 0.7;
-/// Where they would take fewer ticks, this share, and searches the rest; unless only a small part
-/// of what may be near is felt, which searches tell sooner.
-constexpr double kSeveralTicksAfterJump = 2;
-constexpr double kSomeLooked = 0.4;
-constexpr double kLeastFelt = 0.25;
-constexpr double kFewestToLook = 64;
+constexpr double kMostSurveyed = 0.9;
+constexpr double kFewestToSurvey = 64;
 constexpr double kMostProbed = 1e6;  ///< units a region; no search takes as many
 /// Then following takes this share of what is left, the larger where it brings witnesses nearer
 /// for the same work than searches do: by half as much, for it also keeps them there.
@@ -68,9 +66,9 @@ class Narrowing {
 
   void run() noexcept {
     share_tolerance();
-    if (work_.swept && work_.demand.limited && work_.count > 0) look_where_far_to_go();
-    if (!lags_) narrow_widest(work_.demand.limited);
-    if (lags_) {
+    if (work_.swept && work_.demand.limited && work_.count > 0) survey_where_far_to_go();
+    narrow_widest(work_.demand.limited && !lags_);
+    if (lags_ && !work_.followed) {
       work_.followed = true;
       follow_witnesses();
       narrow_widest(false);
@@ -164,24 +162,21 @@ class Narrowing {
   }
 
   /// After a jump, where the searches of all that may be near would take several times what the
-  /// tick has: what is near is looked up, so that a tick in contact feels some of everywhere.
-  void look_where_far_to_go() noexcept {
+  /// tick has: what is near is looked up, so that a tick in contact feels some of everywhere. The
+  /// nearest are what the rest of the tick is for.
+  void survey_where_far_to_go() noexcept {
     if (!work_.pace.go_on()) return;
     const std::uint64_t unit_ns = pursuit_.unit_ns > 0 ? pursuit_.unit_ns : kAssumedUnit_ns;
     const double units = work_.meter.queries_in_all(unit_ns);
     const double each = units / work_.count;
-    if (units < kFewestToLook || each > kMostProbed || !can_look(work_.frame_of(work_.active()[0])))
+    if (units < kFewestToSurvey || each > kMostProbed ||
+        !can_look(work_.frame_of(work_.active()[0])))
       return;
-    const double ticks = pursuit_.searches >= kFewSearches
-                             ? pursuit_.search_units / each
-                             : probed(kManyTicksAfterJump * each) / each;
-    if (!work_.pace.go_on()) return;
-    lags_ = ticks >= kManyTicksAfterJump;
-    if (lags_) {
-      look_first(work_, kMostLooked * units, 0);
-    } else if (ticks >= kSeveralTicksAfterJump) {
-      look_first(work_, kSomeLooked * units, kLeastFelt);
-    }
+    const double ticks = pursuit_.searches >= kFewSearches ? pursuit_.search_units / each
+                                                           : probed(kTicksToSurvey * each) / each;
+    if (!work_.pace.go_on() || ticks < kTicksToSurvey) return;
+    lags_ = work_.followed = true;
+    survey(work_, kMostSurveyed * units);
   }
 
   /// Work units that a search takes, of a few that lie apart; infinite where they take

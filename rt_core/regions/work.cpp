@@ -9,8 +9,20 @@ namespace {
 constexpr float kMayCross = 1;
 /// What is not felt, because others beside it are, goes last.
 constexpr float kNotFelt = 1e-3f;
+/// After a jump nearly everything is open, and what is deepest decides the force: a contact counts
+/// with the square of its depth (force/penalty.hpp), which of a shallow one may still grow. Of what
+/// no contact is known of, few have one. A climb is cheap.
+constexpr float kShallow = 0.1f;
+constexpr float kNoContact = 0.1f;
+constexpr float kNotClimbed = 5;
 
 }  // namespace
+
+float Work::weight_after_jump(const Active& item) const noexcept {
+  if (!is_felt(item)) return kNoContact;
+  const float depth = 1 - upper_of(item) / delta_of(item);
+  return (item.climbed ? 1 : kNotClimbed) * (kShallow + depth * depth);
+}
 
 void Work::widen(Active& item) noexcept {
   const float upper = upper_of(item);
@@ -19,6 +31,7 @@ void Work::widen(Active& item) noexcept {
   const bool may_cross = demand.limited && !swept && item.rest <= 0 && unknown;
   const float doubt = may_cross ? kMayCross * delta_of(item) : 0;
   item.urgency = item.width > kClosed ? (item.width + doubt) / item.weight : 0;
+  if (swept && demand.limited) item.urgency *= weight_after_jump(item);
   if (!is_present(item)) item.urgency *= kNotFelt;
 }
 

@@ -52,6 +52,8 @@ struct Work {
   /// A region whose bounds have changed: sets its width and urgency.
   void widen(Active& item) noexcept;
   void widen_all() noexcept;
+  /// Of its interval in the order of a tick after a jump.
+  [[nodiscard]] float weight_after_jump(const Active& item) const noexcept;
 
   QueryMemory& memory;
   Demand demand;

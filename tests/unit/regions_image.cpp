@@ -118,6 +118,10 @@ TEST(RegionImage, Damage_of_every_kind_is_refused_by_name) {
       {"run of another region", Status::image_bad_index, [](Damaged& d) { d.runs()[1].first = 0; }},
       {"run without an end", Status::image_bad_index, [](Damaged& d) { d.runs()[0].count = ~0u; }},
       {"empty run", Status::image_bad_index, [](Damaged& d) { d.runs()[0].count = 0; }},
+      {"rank of no region", Status::image_bad_index,
+       [](Damaged& d) { d.regions()[1].rank = 1u << 16; }},
+      {"ranks before there were any", Status::image_bad_index,
+       [](Damaged& d) { d.header().format_minor = image::kRanksSince - 1; }},
       {"reserved field used", Status::image_bad_section,
        [](Damaged& d) { d.nodes()[3].reserved[2] = 1; }},
   };

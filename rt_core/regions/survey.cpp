@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/survey.hpp"
+
+#include "rt_core/regions/look_into.hpp"
+#include "rt_core/regions/pair_batch.hpp"
+
+namespace palpate::regions {
+namespace {
+
+/// So many regions tell a force. With fewer looks than these they meet nothing near.
+constexpr double kTelling = 64;
+constexpr double kFewestLooks = 4;
+/// Spread over a region, and beside the nearest.
+constexpr double kKinds = 2;
+constexpr double kUnitsPerLook = 1.0 / kLooksPerUnit + static_cast<double>(kBatchUnits) / kBatch;
+constexpr std::uint32_t kRegionsPerRound = 16;
+constexpr std::uint32_t kMostRounds = 64;  ///< each passes over all active regions
+
+class Survey {
+ public:
+  Survey(Work& work, double units) noexcept
+      : work_(work),
+        end_(static_cast<double>(work.pace.used()) + units),
+        round_of_(work.memory.queue),
+        batch_(work, Take{this}) {
+    const double telling = work.count < kTelling ? work.count : kTelling;
+    const double each = units / (telling * kKinds * kUnitsPerLook);
+    looks_ = static_cast<std::uint32_t>(each < kFewestLooks ? kFewestLooks
+                                        : each < kMostLooks ? each
+                                                            : kMostLooks);
+    const std::uint32_t rounds = work.count / kRegionsPerRound + 1;
+    rounds_ = rounds < kMostRounds ? rounds : kMostRounds;
+  }
+
+  void run() noexcept {
+    for (std::uint32_t i = 0; i < work_.count; ++i) round_of_[i] = round_of(work_.active()[i]);
+    for (std::uint32_t round = 0; round < rounds_ && goes_on(); ++round) {
+      spread_ = true;
+      for_each(round, [this](std::uint32_t i) { look_into(work_, i, looks_, batch_); });
+      spread_ = false;
+      for_each(round, [this](std::uint32_t i) { look_beside_witness(i); });
+    }
+    work_.widen_all();
+  }
+
+ private:
+  struct Take {
+    Survey* survey;
+    void operator()(std::uint32_t index, const Witness& pair) const noexcept {
+      survey->take(index, pair);
+    }
+  };
+
+  bool goes_on() noexcept {
+    return static_cast<double>(work_.pace.used()) < end_ && work_.pace.go_on();
+  }
+
+  std::uint32_t round_of(const Active& item) const noexcept {
+    const auto regions = work_.pair_of(item).image_a->regions;
+    return static_cast<std::uint32_t>(std::uint64_t{regions[item.region].rank} * rounds_ /
+                                      regions.size());
+  }
+
+  /// Calls a function with every active region of a round, and measures what it adds.
+  void for_each(std::uint32_t round, auto visit) noexcept {
+    for (std::uint32_t i = 0; i < work_.count && goes_on(); ++i) {
+      if (round_of_[i] == round && can_look(work_.frame_of(work_.active()[i]))) visit(i);
+    }
+    batch_.measure_all();
+  }
+
+  void look_beside_witness(std::uint32_t index) noexcept {
+    const Active& item = work_.active()[index];
+    if (!work_.is_felt(item)) return;
+    Witness found[kMostLooks];
+    const std::uint32_t count =
+        look_beside(work_.frame_of(item), item.region, work_.witness_of(item).a, looks_, found);
+    work_.pace.charge(count / kLooksPerUnit);
+    for (std::uint32_t k = 0; k < count; ++k) batch_.add(index, found[k]);
+  }
+
+  void take(std::uint32_t index, const Witness& pair) noexcept {
+    const Active& item = work_.active()[index];
+    RegionState& state = work_.state_of(item);
+    if (spread_) note_seed(*work_.frame_of(item).a, pair, state.seeds);
+    const bool was_felt = work_.is_felt(item);
+    if (!state.witness.known() || pair.distance < state.witness.distance) state.witness = pair;
+    // Contacts take time, too: no more are sought than can be told.
+    if (!was_felt && work_.is_felt(item)) work_.meter.expect_contacts(++felt_);
+  }
+
+  Work& work_;
+  double end_;  // in work units
+  std::span<std::uint32_t> round_of_;
+  PairBatch<Take> batch_;
+  std::uint32_t looks_ = 0;  // of either kind
+  std::uint32_t rounds_ = 0;
+  bool spread_ = true;  // which kind is measured
+  std::uint64_t felt_ = 0;
+};
+
+}  // namespace
+
+void survey(Work& work, double units) noexcept {
+  if (work.count > 0) Survey(work, units).run();
+}
+
+}  // namespace palpate::regions

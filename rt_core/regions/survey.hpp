@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// First witnesses after a jump, where searches would take many ticks.
+#pragma once
+
+#include "rt_core/regions/work.hpp"
+
+namespace palpate::regions {
+
+/// Gives active regions a witness by looks (look.hpp): the nearest of some spread over the region,
+/// then of as many beside that. Rounds of some sixteen regions each follow the order in which they
+/// are spread over the surface (image::Region::rank), so that whatever ends it has seen evenly of
+/// everywhere: a force is told by few contacts from all sides (crowd.hpp), and told wrong by many
+/// from one. Each region has four to kMostLooks looks of either kind, as many as the units do for
+/// if 64 regions are to be seen.
+///
+/// Proves nothing; witnesses are at the present poses as before. Where an image cannot be looked up
+/// in, nothing.
+/// @param units  work units to be used, at most, to a batch
+void survey(Work& work, double units) noexcept;
+
+}  // namespace palpate::regions
