@@ -87,11 +87,13 @@ std::uint32_t look_beside(const PairFrame& frame, std::uint32_t region, std::uin
                           std::uint32_t count, Witness (&out)[kMostLooks]) noexcept {
   PALPATE_ASSERT(count <= kMostLooks && can_look(frame));
   const image::RegionRun& run = frame.a->region_runs[region];
-  const std::uint32_t before = triangle > run.first + count / 2 ? triangle - count / 2 : run.first;
-  const std::uint32_t end = run.first + run.count;
+  const std::uint32_t wanted = count < run.count ? count : run.count - 1;
+  const std::uint32_t last = run.first + run.count - 1 - wanted;
+  const std::uint32_t centred = triangle > wanted / 2 ? triangle - wanted / 2 : 0;
+  std::uint32_t next = centred < run.first ? run.first : centred < last ? centred : last;
   std::uint32_t found = 0;
-  for (std::uint32_t t = before; t < end && found < count; ++t) {
-    if (t != triangle) out[found++] = {t, 0, 0};
+  for (; found < wanted; ++next) {
+    if (next != triangle) out[found++] = {next, 0, 0};
   }
   find_near(frame, found, out);
   return found;

@@ -93,6 +93,34 @@ TEST(RegionsBudget, depths_of_what_crosses_are_known_where_the_budget_nearly_doe
   EXPECT_LT(std::sqrt(squares / ticks) / peak, 0.03);
 }
 
+/// Nearly everything is open then, and the force is that of the deepest contacts.
+TEST(RegionsBudget, after_a_jump_what_is_deepest_is_known_first) {
+  bake::BakeOptions options = options_for(bake::ForEngine::regions);
+  options.delta_rel = 0.02;
+  const BakedBody upper(bake::make_model("jaw_upper", 24'000), options);
+  const BakedBody lower(bake::make_model("jaw_lower", 24'000), options);
+  const double delta_m = options.delta_rel * upper.view.header->radius_m;
+  const Settings settings{
+      .engine = EngineKind::regions, .delta_m = delta_m, .cluster_radius_m = delta_m};
+  double squares = 0, peak = 0, units = 0;
+  constexpr int kJumps = 40;
+  for (int i = 0; i < kJumps; ++i) {
+    Pose poses[2] = {ground(0.1, 15 * i), {}};
+    poses[0].position_m.z += 8e-4;  // apart
+    BakedScene exact({upper.view, lower.view}, {{0, 1}}, settings);
+    BakedScene budgeted({upper.view, lower.view}, {{0, 1}}, settings);
+    const TickResult truth = tick_or_fail(*exact.engine, poses);
+    const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = 4000});
+    units += static_cast<double>(truth.queries) / kJumps;
+    squares += squared_norm(found.wrench.force_N - truth.wrench.force_N) / kJumps;
+    peak = std::max(peak, norm(truth.wrench.force_N));
+  }
+  RecordProperty("units", std::to_string(units));
+  RecordProperty("error", std::to_string(std::sqrt(squares) / peak));
+  EXPECT_GT(units, 4000);
+  EXPECT_LT(std::sqrt(squares) / peak, 0.08);
+}
+
 TEST(RegionsBudget, every_budget_gives_a_true_certificate) {
   std::vector<double> forces;
   BakedScene exact = scene_with(kSettings);

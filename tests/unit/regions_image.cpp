@@ -198,6 +198,36 @@ double least_cosine(const bake::RegionTree& tree) {
   return least;
 }
 
+TEST(RegionTree, Every_beginning_of_the_ranks_is_spread_over_the_surface) {
+  const bake::RegionTree tree = tree_of(bumpy_ball(80, 100, 1), 0.02);
+  const std::size_t count = tree.regions.size();
+  ASSERT_GT(count, 64u);
+  std::vector<Vec3d> ranked(count);
+  std::vector<int> times(count);
+  for (const image::Region& r : tree.regions) {
+    ASSERT_LT(r.rank, count);
+    ++times[r.rank];
+    const image::RegionNode& node = tree.nodes[r.parent];
+    ranked[r.rank] = {double(node.centre[0][r.slot]), double(node.centre[1][r.slot]),
+                      double(node.centre[2][r.slot])};
+  }
+  for (const int n : times) EXPECT_EQ(n, 1);
+  // No place is farther from the first ones than these are from one another.
+  for (const std::size_t first : {4u, 16u, 64u}) {
+    double closest = 1e9;
+    double farthest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      double nearest = 1e9;
+      for (std::size_t k = 0; k < first; ++k) {
+        if (k != i) nearest = std::min(nearest, norm(ranked[i] - ranked[k]));
+      }
+      if (i < first) closest = std::min(closest, nearest);
+      if (i >= first) farthest = std::max(farthest, nearest);
+    }
+    EXPECT_LE(farthest, closest * (1 + 1e-12)) << first;
+  }
+}
+
 TEST(RegionTree, Opposite_walls_are_in_different_regions) {
   bake::Mesh plate;
   for (int i = 0; i < 8; ++i) append(plate, box(0.1, 0.1, 0.002), 0.2 * i, 0, 0);

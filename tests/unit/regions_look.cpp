@@ -78,6 +78,28 @@ TEST(RegionLook, Looks_in_a_row_are_of_different_triangles) {
   }
 }
 
+TEST(RegionLook, Looks_beside_a_triangle_are_of_the_others_of_its_region_that_follow_one_another) {
+  const ImageView& view = ball().view;
+  const regions::PairFrame frame = coincident(view);
+  for (std::uint32_t region = 0; region < view.regions.size(); ++region) {
+    const image::RegionRun run = view.region_runs[region];
+    const std::uint32_t last = run.first + run.count - 1;
+    for (const std::uint32_t triangle : {run.first, run.first + run.count / 2, last}) {
+      for (const std::uint32_t count : {1u, 6u, regions::kMostLooks}) {
+        regions::Witness found[regions::kMostLooks];
+        const std::uint32_t n = regions::look_beside(frame, region, triangle, count, found);
+        ASSERT_EQ(n, std::min(count, run.count - 1));
+        for (std::uint32_t i = 0; i < n; ++i) {
+          EXPECT_EQ(view.region_triangles[found[i].a].region, region);
+          EXPECT_NE(found[i].a, triangle);
+          EXPECT_LE(std::max(found[i].a, triangle) - std::min(found[i].a, triangle), count);
+          EXPECT_LT(found[i].b, view.region_triangles.size());
+        }
+      }
+    }
+  }
+}
+
 TEST(RegionLook, Far_outside_something_is_named) {
   const ImageView& view = ball().view;
   regions::PairFrame frame = coincident(view);
