@@ -38,7 +38,7 @@ Steps largest_steps(const Settings& settings, std::uint64_t units, double speed_
   BakedScene scene({upper().view, lower().view}, {{0, 1}}, settings);
   const Pose poses[2] = {};
   realtime::EngineQuery contacts(*scene.engine, poses, 0);
-  realtime::SteadyQuery steadied(contacts, {}, kPeriod_s);
+  realtime::SteadyQuery steadied(contacts, {}, settings.stiffness_N_per_m, kPeriod_s);
   realtime::ContactQuery& query =
       steady ? static_cast<realtime::ContactQuery&>(steadied) : contacts;
   Steps steps;

@@ -87,7 +87,7 @@ TEST_P(EnergyOfTheLoop, is_never_given_out) {
   BakedScene scene({both.tool.view, both.other.view}, {{0, 1}}, {});
   const Pose poses[2] = {};
   realtime::EngineQuery contacts(*scene.engine, poses, 0);
-  realtime::SteadyQuery steady(contacts, {}, 1 / kRate_Hz);
+  realtime::SteadyQuery steady(contacts, {}, Settings{}.stiffness_N_per_m, 1 / kRate_Hz);
   realtime::CoupledQuery coupled(contacts, {}, 1 / kRate_Hz);
   realtime::ContactQuery& query =
       GetParam().coupled ? static_cast<realtime::ContactQuery&>(coupled) : steady;

@@ -14,6 +14,7 @@ using test::QueryOf;
 using test::wall;
 
 constexpr double kPeriod_s = 1e-3;
+constexpr double kStiffness_N_per_m = 600;
 
 Pose at_z(double z_m) {
   Pose pose;
@@ -28,8 +29,8 @@ double force_N(SteadyQuery& query, const Pose& pose) {
 }
 
 TEST(SteadyQuery, leaves_a_force_alone_that_follows_its_model) {
-  QueryOf contacts(wall(600));
-  SteadyQuery query(contacts, {10, 1}, kPeriod_s);
+  QueryOf contacts(wall(kStiffness_N_per_m));
+  SteadyQuery query(contacts, {10, 1}, kStiffness_N_per_m, kPeriod_s);
   for (int i = 0; i < 400; ++i) static_cast<void>(force_N(query, at_z(-0.001)));
   // 6 N/s of the rate's 10 would be too slow for this, at 1 m/s.
   EXPECT_NEAR(force_N(query, at_z(-0.002)), 1.2, 1e-12);
@@ -41,7 +42,7 @@ TEST(SteadyQuery, brings_a_jump_at_its_rate) {
   double stiffness = 600;
   QueryOf contacts(
       [&](const Pose& p, const Budget& b, TickResult& out) { return wall(stiffness)(p, b, out); });
-  SteadyQuery query(contacts, {50, 1}, kPeriod_s);
+  SteadyQuery query(contacts, {50, 1}, kStiffness_N_per_m, kPeriod_s);
   for (int i = 0; i < 100; ++i) static_cast<void>(force_N(query, at_z(-0.001)));
   stiffness = 900;  // 0.3 N more without a motion
   for (int i = 1; i <= 6; ++i) {
@@ -52,8 +53,8 @@ TEST(SteadyQuery, brings_a_jump_at_its_rate) {
 }
 
 TEST(SteadyQuery, forgets_a_contact_that_is_gone_at_its_rate) {
-  QueryOf contacts(wall(600));
-  SteadyQuery query(contacts, {100, 1}, kPeriod_s);
+  QueryOf contacts(wall(kStiffness_N_per_m));
+  SteadyQuery query(contacts, {100, 1}, kStiffness_N_per_m, kPeriod_s);
   for (int i = 0; i < 50; ++i) static_cast<void>(force_N(query, at_z(-0.001)));
   // Its model, a spring, pulls beyond the wall; contacts of the new place have none.
   EXPECT_NEAR(force_N(query, at_z(0.0005)), -0.2, 1e-12);
@@ -62,25 +63,130 @@ TEST(SteadyQuery, forgets_a_contact_that_is_gone_at_its_rate) {
 }
 
 TEST(SteadyQuery, widens_the_certificate_by_what_it_holds_back) {
-  QueryOf contacts(wall(600));
-  SteadyQuery query(contacts, {100, 1}, kPeriod_s);
+  QueryOf contacts(wall(kStiffness_N_per_m));
+  SteadyQuery query(contacts, {100, 1}, kStiffness_N_per_m, kPeriod_s);
   TickResult out;
   ASSERT_EQ(query.tick(at_z(-0.001), {}, out), Status::ok);
   EXPECT_NEAR(out.wrench.force_N.z, 0.1, 1e-12);
   EXPECT_NEAR(out.certificate.force_bound_N, 0.5, 1e-12);
 }
 
+/// A wall whose distance may be off, with some force beside its own.
+struct UncertainWall {
+  double error_m = 0;
+  double more_N = 0;
+  QueryOf contacts{[this](const Pose& pose, const Budget& budget, TickResult& out) {
+    const Status status = wall(kStiffness_N_per_m)(pose, budget, out);
+    out.wrench.force_N.z += more_N;
+    out.certificate.error_bound_m = error_m;
+    return status;
+  }};
+  SteadyQuery query{contacts, {}, kStiffness_N_per_m, kPeriod_s};
+};
+
+/// Along the wall at 0.1 m/s, a millimetre deep.
+Pose slid(int tick) {
+  Pose pose = at_z(-0.001);
+  pose.position_m.x = 1e-4 * tick;
+  return pose;
+}
+constexpr double kDoubtful_m = 0.001;
+/// What is let in of a force that does not change as it slides: 2 N/s, and little for one change.
+constexpr double kSmooth_N = 0.0025;
+
+TEST(SteadyQuery, believes_what_is_certain_at_once) {
+  UncertainWall wall;
+  for (int i = 0; i < 100; ++i) static_cast<void>(force_N(wall.query, slid(i)));
+  wall.more_N = 0.1;
+  EXPECT_NEAR(force_N(wall.query, slid(100)), 0.7, 1e-12);
+  // 0.1 N within 0.02 mm at both ends: 0.036 N of it are doubtful.
+  wall.error_m = 2e-5;
+  static_cast<void>(force_N(wall.query, slid(101)));
+  wall.more_N = 0.2;
+  const double after_N = force_N(wall.query, slid(102));
+  EXPECT_GT(after_N, 0.7 + 0.064 - 1e-9);
+  EXPECT_LT(after_N, 0.8 - 0.03);
+}
+
+TEST(SteadyQuery, lets_what_may_not_be_true_in_no_faster_than_the_force_usually_changes) {
+  UncertainWall wall;
+  wall.error_m = kDoubtful_m;
+  double before_N = 0;
+  for (int i = 0; i < 100; ++i) before_N = force_N(wall.query, slid(i));
+  EXPECT_NEAR(before_N, 0.6, 1e-12);
+  wall.more_N = 0.1;
+  for (int i = 100; i < 160; ++i) {
+    const double now_N = force_N(wall.query, slid(i));
+    EXPECT_LE(now_N - before_N, kSmooth_N);
+    before_N = now_N;
+  }
+  EXPECT_NEAR(before_N, 0.7, 1e-12);
+}
+
+TEST(SteadyQuery, lets_it_in_at_once_where_the_force_changes_as_much_all_the_time) {
+  UncertainWall wall;
+  wall.error_m = kDoubtful_m;
+  double sent_N = 0;
+  for (int i = 0; i < 200; ++i) {
+    wall.more_N = i % 2 == 0 ? 0 : 0.05;
+    sent_N = force_N(wall.query, slid(i));
+  }
+  EXPECT_NEAR(sent_N, 0.65, 1e-12);
+}
+
+TEST(SteadyQuery, brings_what_was_doubtful_in_no_faster_once_it_is_certain) {
+  UncertainWall wall;
+  wall.error_m = kDoubtful_m;
+  for (int i = 0; i < 100; ++i) static_cast<void>(force_N(wall.query, slid(i)));
+  wall.more_N = 0.1;
+  double before_N = force_N(wall.query, slid(100));
+  wall.error_m = 0;
+  for (int i = 101; i < 160; ++i) {
+    const double now_N = force_N(wall.query, slid(i));
+    EXPECT_LE(now_N - before_N, kSmooth_N);
+    before_N = now_N;
+  }
+  EXPECT_NEAR(before_N, 0.7, 1e-12);
+}
+
+TEST(SteadyQuery, follows_the_way_into_a_doubtful_surface) {
+  UncertainWall wall;
+  wall.error_m = kDoubtful_m;
+  for (int i = 0; i < 100; ++i) static_cast<void>(force_N(wall.query, at_z(-0.001)));
+  double before_N = 0.6;
+  for (int i = 1; i <= 20; ++i) {
+    const double now_N = force_N(wall.query, at_z(-0.001 - 1e-4 * i));
+    EXPECT_GE(now_N - before_N, 0.7 * 0.06 - 1e-12);
+    before_N = now_N;
+  }
+}
+
+TEST(UsualShare, is_the_mean_of_late) {
+  UsualShare usual;
+  for (int i = 0; i < 400; ++i) usual.note(i % 2 == 0 ? 0.4 : 0.8);
+  EXPECT_NEAR(usual.now(), 0.6, 0.01);
+  for (int i = 0; i < 400; ++i) usual.note(0.02);
+  EXPECT_NEAR(usual.now(), 0.02, 0.002);
+}
+
+TEST(UsualShare, does_not_rise_much_for_a_single_change) {
+  UsualShare usual;
+  for (int i = 0; i < 400; ++i) usual.note(0.02);
+  usual.note(100);
+  EXPECT_LT(usual.now(), 0.023);
+}
+
 TEST(SteadyQuery, of_infinite_rates_is_not_there) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  QueryOf contacts(wall(600));
-  SteadyQuery query(contacts, {kInfinity, kInfinity}, kPeriod_s);
+  QueryOf contacts(wall(kStiffness_N_per_m));
+  SteadyQuery query(contacts, {kInfinity, kInfinity}, kStiffness_N_per_m, kPeriod_s);
   EXPECT_EQ(force_N(query, at_z(-0.001)), 0.6);
   EXPECT_EQ(force_N(query, at_z(0.001)), 0);
 }
 
 TEST(SteadyQuery, hands_an_error_on) {
   QueryOf contacts([](const Pose&, const Budget&, TickResult&) { return Status::bad_pose; });
-  SteadyQuery query(contacts, {}, kPeriod_s);
+  SteadyQuery query(contacts, {}, kStiffness_N_per_m, kPeriod_s);
   TickResult out;
   EXPECT_EQ(query.tick({}, {}, out), Status::bad_pose);
 }

@@ -75,7 +75,7 @@ std::vector<Vec3d> forces(const Scene& scene, const std::vector<Pose>& poses, Se
   settings.delta_m = scene.delta_m;
   Bench bench(scene.a, scene.b, settings);
   BenchQuery contacts(bench);
-  realtime::SteadyQuery query(contacts, rates, kPeriod_s);
+  realtime::SteadyQuery query(contacts, rates, settings.stiffness_N_per_m, kPeriod_s);
   std::vector<Vec3d> out;
   for (const Pose& pose : poses) {
     TickResult r;

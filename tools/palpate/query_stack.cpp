@@ -23,7 +23,8 @@ QueryStack::QueryStack(const config::Scene& scene, Engine& engine, std::span<con
   }
   if (scene.coupling == config::Coupling::direct) {
     const realtime::SteadyRates rates{scene.steady_force_N_per_s, scene.steady_torque_Nm_per_s};
-    top_ = &steady_.emplace(*top_, rates, 1 / scene.contact_rate_Hz.value_or(rate_Hz));
+    const double contact_period_s = 1 / scene.contact_rate_Hz.value_or(rate_Hz);
+    top_ = &steady_.emplace(*top_, rates, scene.settings.stiffness_N_per_m, contact_period_s);
   }
   if (scene.contact_rate_Hz) {
     const double most = std::ceil(kMostServerPeriods * rate_Hz / *scene.contact_rate_Hz);
