@@ -75,9 +75,11 @@ TEST(SteadyQuery, widens_the_certificate_by_what_it_holds_back) {
 struct UncertainWall {
   double error_m = 0;
   double more_N = 0;
+  bool gone = false;
   QueryOf contacts{[this](const Pose& pose, const Budget& budget, TickResult& out) {
     const Status status = wall(kStiffness_N_per_m)(pose, budget, out);
     out.wrench.force_N.z += more_N;
+    if (gone) out = {};
     out.certificate.error_bound_m = error_m;
     return status;
   }};
@@ -147,6 +149,19 @@ TEST(SteadyQuery, brings_what_was_doubtful_in_no_faster_once_it_is_certain) {
     before_N = now_N;
   }
   EXPECT_NEAR(before_N, 0.7, 1e-12);
+}
+
+TEST(SteadyQuery, lets_go_at_its_rate_where_certainly_nothing_touches) {
+  UncertainWall wall;
+  for (int i = 0; i < 100; ++i) static_cast<void>(force_N(wall.query, slid(i)));
+  wall.gone = true;
+  wall.error_m = kDoubtful_m;
+  EXPECT_GT(force_N(wall.query, slid(100)), 0.59);
+  EXPECT_GT(force_N(wall.query, slid(101)), 0.58);
+  wall.error_m = 0;
+  static_cast<void>(force_N(wall.query, slid(102)));
+  for (int i = 103; i < 107; ++i) static_cast<void>(force_N(wall.query, slid(i)));
+  EXPECT_EQ(force_N(wall.query, slid(107)), 0);
 }
 
 TEST(SteadyQuery, follows_the_way_into_a_doubtful_surface) {

@@ -46,6 +46,7 @@ class Doubtful {
   Vec3d follow(const Vec3d& told, const Change& change) noexcept;
   /// The contacts', of the last tick.
   [[nodiscard]] const Vec3d& told() const noexcept { return told_; }
+  [[nodiscard]] const Vec3d& believed() const noexcept { return believed_; }
 
  private:
   Vec3d told_{};

@@ -45,10 +45,13 @@ Wrench SteadyQuery::believed(const TickResult& found, const Vec6& way, const Vec
   const double doubt_N = kDoubt * stiffness_N_per_m_ * found.certificate.error_bound_m;
   const double doubts_N = before_doubt_N_ + doubt_N;
   before_doubt_N_ = doubt_N;
+  const bool apart = found.contacts.empty();
   const auto follow = [&](Doubtful& part, const Vec3d& told, const Vec3d& modelled, double arm,
                           double most) {
+    // Where no contact is found, no more is felt than the doubt leaves possible.
+    const double changed = norm(apart ? part.believed() : told - part.told());
     const double certain =
-        std::max({norm(told - part.told()) - arm * doubts_N, norm(modelled) - arm * slope_N, 0.0});
+        std::max({changed - arm * doubts_N, norm(modelled) - arm * slope_N, 0.0});
     return part.follow(told, {begun_ ? certain : kInfinity, arm * stiffness_N_per_m_ * motion_m,
                               kLeastShare * most});
   };
