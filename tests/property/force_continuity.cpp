@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 
 #include "host_bake/models/models.hpp"
 #include "tests/support/baked_scene.hpp"
@@ -62,11 +63,19 @@ class GroundJaws : public testing::TestWithParam<double> {};
 TEST_P(GroundJaws, steadied_force_steps_at_most_half_as_far_again_as_the_exact_one) {
   const double speed_m_per_s = GetParam();
   const Steps exact = largest_steps({.exact = true}, kUnlimited, speed_m_per_s, false);
-  for (const double s0 : {0.005, 0.05}) {
+  const Settings settings[] = {{.s0 = 0.005},
+                               {.s0 = 0.015},
+                               {.s0 = 0.05},
+                               {.s0 = 0.005, .contact_dive = true},
+                               {.s0 = 0.05, .contact_dive = true},
+                               {.s0 = 1e3, .kappa = 0.1}};
+  for (const Settings& setting : settings) {
     for (const std::uint64_t units : {kUnlimited, std::uint64_t{200}, std::uint64_t{60}}) {
-      const Steps felt = largest_steps({.s0 = s0}, units, speed_m_per_s, true);
-      EXPECT_LE(felt.force_N, 1.5 * exact.force_N) << "s0 " << s0 << ", " << units << " units";
-      EXPECT_LE(felt.torque_Nm, 1.5 * exact.torque_Nm) << "s0 " << s0 << ", " << units << " units";
+      const Steps felt = largest_steps(setting, units, speed_m_per_s, true);
+      SCOPED_TRACE("s0 " + std::to_string(setting.s0) +
+                   (setting.contact_dive ? ", dives, " : ", ") + std::to_string(units) + " units");
+      EXPECT_LE(felt.force_N, 1.5 * exact.force_N);
+      EXPECT_LE(felt.torque_Nm, 1.5 * exact.torque_Nm);
     }
   }
 }
