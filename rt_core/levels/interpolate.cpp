@@ -8,9 +8,13 @@ namespace {
 
 using image::Piece;
 
-bool has_metric(const Work& work, const Node& node) noexcept {
+/// Free pieces have no metric, and those that are too coarse for kappa never have a share.
+bool may_mix(const Work& work, const Node& node) noexcept {
   const PairState& pair = work.pair_of(node);
-  return !is_free(piece_a(pair, node)) && !is_free(piece_b(pair, node));
+  const Piece& a = piece_a(pair, node);
+  const Piece& b = piece_b(pair, node);
+  return !is_free(a) && !is_free(b) && !is_too_coarse(pair, a, pair.scale_a, work.rules) &&
+         !is_too_coarse(pair, b, pair.scale_b, work.rules);
 }
 
 /// All children are in the front, and those that are near have stopped.
@@ -112,7 +116,7 @@ class Group {
 bool is_due(const Work& work, std::uint32_t parent) noexcept {
   if (parent == kNone) return false;
   const Node& node = work.tree[parent];
-  return node.report != work.memory.ticks && has_metric(work, node) && work.is_near(node) &&
+  return node.report != work.memory.ticks && may_mix(work, node) && work.is_near(node) &&
          children_settled(work, node);
 }
 
@@ -159,7 +163,7 @@ void replace_children(Work& work, std::uint32_t parent) noexcept {
 void note_blending(Work& work, std::uint32_t index) noexcept {
   const Node& node = work.tree[index];
   const bool blends = work.rules.interpolate && !work.rules.exact &&
-                      static_cast<double>(node.excess) < kOwnContactFrom && has_metric(work, node);
+                      static_cast<double>(node.excess) < kOwnContactFrom && may_mix(work, node);
   work.tree.set_blending(index, blends);
 }
 

@@ -19,13 +19,16 @@ inline constexpr double kOwnContactFrom = 2;
 /// (e_p - 1) / (1 - e_c), at most all, of distance, normal and points, and the parent has the rest.
 /// At e_p = 1, where refinement would stop at the parent, that is the parent's contact alone; at
 /// e_c = 1, where a child would be refined, the children's alone: continuous at both, and where a
-/// child comes within delta or leaves it. The parents are what the query has passed through, so the
-/// paper's conservative refinement below a stop is not needed. A parent with e_p <= 1 takes its
-/// children's place: so the front does not depend on how it came about. Only a parent that is
-/// within delta and yet has no contact, because its witness lies inside the solid, leaves those of
-/// its children alone. One query for each near parent of settled children that has a stopped one,
-/// or e_p < kOwnContactFrom, while the budget lasts; nothing else of the front is looked at. The
-/// contact of a parent that dives is the nearest of its children's: nothing below is nearer.
+/// child comes within delta or leaves it. Where kappa asks for the children e_p is infinite and
+/// they have all: it allows a piece or does not, however the bodies lie, so that no motion leads
+/// from the one to the other, and a share of the parent would stay. The parents are what the query
+/// has passed through, so the paper's conservative refinement below a stop is not needed. A parent
+/// with e_p <= 1 takes its children's place: so the front does not depend on how it came about.
+/// Only a parent that is within delta and yet has no contact, because its witness lies inside the
+/// solid, leaves those of its children alone. One query for each near parent of settled children
+/// that has a stopped one, or e_p < kOwnContactFrom, while the budget lasts; nothing else of the
+/// front is looked at. The contact of a parent that dives is the nearest of its children's: nothing
+/// below is nearer.
 void interpolate(Work& work) noexcept;
 
 /// Keeps a node inside the tree at hand for later ticks where its e_p < kOwnContactFrom.

@@ -45,11 +45,10 @@ Detail detail(const PairState& pair, const Piece& a, const Piece& b, const conve
   const double b_to_a = pair.scale_b / pair.scale_a;
   const double star_a = phi(a) / larger(area_a, area_b * b_to_a * b_to_a);
   const double star_b = phi(b) / larger(area_b, area_a / (b_to_a * b_to_a));
-  const double allowed = rules.kappa * pair.delta;
-  const double s_a = pair.scale_a * static_cast<double>(a.surface_deviation);
-  const double s_b = pair.scale_b * static_cast<double>(b.surface_deviation);
-  const double excess_a = larger(ratio(star_a, rules.s0), ratio(s_a, allowed));
-  const double excess_b = larger(ratio(star_b, rules.s0), ratio(s_b, allowed));
+  const double excess_a =
+      is_too_coarse(pair, a, pair.scale_a, rules) ? kInfinity : ratio(star_a, rules.s0);
+  const double excess_b =
+      is_too_coarse(pair, b, pair.scale_b, rules) ? kInfinity : ratio(star_b, rules.s0);
   out.s_star = larger(star_a, star_b);
   out.excess = larger(excess_a, excess_b);
   out.refine_a = excess_a > 1 && a.children != 0;

@@ -36,7 +36,8 @@ enum class Discipline : std::uint8_t {
 /// Detail that a pair of pieces leaves out.
 struct Detail {
   double s_star = 0;  ///< weighted surface deviation (eq. 7), relative to the radius
-  double excess = 0;  ///< largest ratio of a deviation to what its rule allows: above 1, refine
+  /// Largest ratio of s* to what s0 allows: above 1, refine. Infinite where kappa asks for more.
+  double excess = 0;
   bool refine_a = false;
   bool refine_b = false;
 };
@@ -47,6 +48,12 @@ constexpr bool has(const image::Piece& piece, image::PieceFlag flag) noexcept {
 
 /// Free pieces have no metric: always refined where they are near.
 inline bool is_free(const image::Piece& piece) noexcept { return piece.triangles == 0; }
+
+/// Whether kappa asks for more than this piece: it does wherever the piece is touched.
+inline bool is_too_coarse(const PairState& pair, const image::Piece& piece, double scale,
+                          const Rules& rules) noexcept {
+  return scale * static_cast<double>(piece.surface_deviation) > rules.kappa * pair.delta;
+}
 
 /// The rules applied to two pieces with metrics.
 ///

@@ -131,6 +131,11 @@ TEST_P(RolledEllipsoid, without_steadying_it_is_worse) {
   EXPECT_GT(largest_step(forces(way_, {.s0 = 0.05}).found), 5 * largest_step(levels_));
 }
 
+TEST_P(RolledEllipsoid, under_kappa_steps_so_without_steadying) {
+  const Settings interpolated{.s0 = 1e3, .kappa = 0.1};
+  EXPECT_LE(largest_step(forces(way_, interpolated).found), 1.5 * largest_step(levels_));
+}
+
 INSTANTIATE_TEST_SUITE_P(Speeds, RolledEllipsoid, testing::Values(false, true),
                          [](const auto& tested) {
                            return std::string(tested.param ? "370" : "120") + "_mm_per_s";
