@@ -8,15 +8,6 @@ namespace {
 
 using image::Piece;
 
-/// Free pieces have no metric, and those that are too coarse for kappa never have a share.
-bool may_mix(const Work& work, const Node& node) noexcept {
-  const PairState& pair = work.pair_of(node);
-  const Piece& a = piece_a(pair, node);
-  const Piece& b = piece_b(pair, node);
-  return !is_free(a) && !is_free(b) && !is_too_coarse(pair, a, pair.scale_a, work.rules) &&
-         !is_too_coarse(pair, b, pair.scale_b, work.rules);
-}
-
 /// All children are in the front, and those that are near have stopped.
 bool children_settled(const Work& work, const Node& parent) noexcept {
   const TestTree& tree = work.tree;
@@ -159,6 +150,14 @@ void replace_children(Work& work, std::uint32_t parent) noexcept {
 }
 
 }  // namespace
+
+bool may_mix(const Work& work, const Node& node) noexcept {
+  const PairState& pair = work.pair_of(node);
+  const Piece& a = piece_a(pair, node);
+  const Piece& b = piece_b(pair, node);
+  return !is_free(a) && !is_free(b) && !is_too_coarse(pair, a, pair.scale_a, work.rules) &&
+         !is_too_coarse(pair, b, pair.scale_b, work.rules);
+}
 
 void note_blending(Work& work, std::uint32_t index) noexcept {
   const Node& node = work.tree[index];

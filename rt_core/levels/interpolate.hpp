@@ -31,6 +31,10 @@ inline constexpr double kOwnContactFrom = 2;
 /// below is nearer.
 void interpolate(Work& work) noexcept;
 
+/// Whether a node may ever have a share of its children's contacts. Free pieces have no metric, and
+/// those that are too coarse for kappa have none.
+[[nodiscard]] bool may_mix(const Work& work, const Node& node) noexcept;
+
 /// Keeps a node inside the tree at hand for later ticks where its e_p < kOwnContactFrom.
 void note_blending(Work& work, std::uint32_t index) noexcept;
 

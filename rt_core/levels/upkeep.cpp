@@ -58,7 +58,7 @@ bool raise_to_surface(Work& work, std::uint32_t parent) noexcept {
 
 void renew_detail(Work& work, std::uint32_t parent) noexcept {
   Node& node = work.tree[parent];
-  if (!work.rules.interpolate || work.rules.exact || work.only_culls(node) || !work.is_near(node))
+  if (!work.rules.interpolate || work.rules.exact || !may_mix(work, node) || !work.is_near(node))
     return;
   const PairState& pair = work.pair_of(node);
   const convex::Distance d = work.probe.own(pair, node);
