@@ -49,7 +49,7 @@ class SteadyQuery final : public ContactQuery {
 
  private:
   static constexpr double kDoubt = 1.5;
-  static constexpr double kSlope = 0.3;
+  static constexpr double kSlope = 0.4;
   /// Of the rates: what is let in however smooth a contact is.
   static constexpr double kLeastShare = 1.0 / 75;
 
