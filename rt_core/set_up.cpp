@@ -53,6 +53,7 @@ struct Layout {
   std::span<std::uint32_t> front, blending, stopped;
   std::span<levels::Waiting> waiting;
   std::span<levels::OpenPair> open;
+  std::span<levels::Touch> touches;
   std::span<convex::PenetrationScratch> scratch;
   std::span<convex::PressureScratch> pressure;
   // Regions engine.
@@ -71,13 +72,14 @@ std::size_t regions_of(const Scene& scene, const BodyPair& pair) noexcept {
   return scene.bodies[pair.a].regions.size();
 }
 
-void lay_out_levels(Arena& arena, const Limits& limits, Layout& out) noexcept {
+void lay_out_levels(Arena& arena, const Scene& scene, const Limits& limits, Layout& out) noexcept {
   out.nodes = arena.array<levels::Node>(limits.nodes);
   out.front = arena.array<std::uint32_t>(limits.nodes);
   out.blending = arena.array<std::uint32_t>(limits.nodes);
   out.waiting = arena.array<levels::Waiting>(limits.nodes);
   out.stopped = arena.array<std::uint32_t>(limits.nodes);
   out.open = arena.array<levels::OpenPair>(levels::kMaxOpenPairs);
+  out.touches = arena.array<levels::Touch>(levels::kTouches * scene.pairs.size());
   out.scratch = arena.array<convex::PenetrationScratch>(1);
   out.pressure = arena.array<convex::PressureScratch>(1);
 }
@@ -116,7 +118,7 @@ Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKin
   out.copies = arena.array<force::Place>(force::Spot::kCorners * limits.contacts);
   out.places = arena.array<force::Place>(limits.clusters);
   if (kind == EngineKind::levels) {
-    lay_out_levels(arena, limits, out);
+    lay_out_levels(arena, scene, limits, out);
   } else {
     lay_out_regions(arena, scene, out);
   }
@@ -147,6 +149,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.levels.waiting = layout.waiting;
   e.levels.stopped = layout.stopped;
   e.levels.open = layout.open;
+  e.levels.touches = layout.touches;
   e.levels.scratch = layout.scratch.data();
   e.levels.pressure = layout.pressure.data();
   e.regions.kernels = &regions::best_kernels();

@@ -28,6 +28,17 @@ struct OpenPair {
 /// Pairs that a dive has open, at most.
 inline constexpr std::uint32_t kMaxOpenPairs = 64;
 
+/// A pair of pieces that has touched (recall.hpp), and where.
+struct Touch {
+  std::uint32_t a = kNone;
+  std::uint32_t b = kNone;
+  Vec3f point_a{};  ///< in the coordinates of a
+  Vec3f point_b{};  ///< in those of b
+};
+/// Remembered of a pair of bodies.
+inline constexpr std::uint32_t kTouchBits = 8;
+inline constexpr std::uint32_t kTouches = 1u << kTouchBits;
+
 /// Memory of the query, borrowed from the engine.
 struct QueryMemory {
   std::span<PairState> pairs;
@@ -35,6 +46,7 @@ struct QueryMemory {
   std::span<Waiting> waiting;        ///< [nodes]
   std::span<std::uint32_t> stopped;  ///< [nodes]; those that refinement stopped at in this tick
   std::span<OpenPair> open;          ///< [kMaxOpenPairs]
+  std::span<Touch> touches;          ///< [kTouches for each pair]
   std::span<Contact> contacts;       ///< [limits.contacts]
   convex::PenetrationScratch* scratch = nullptr;
   convex::PressureScratch* pressure = nullptr;

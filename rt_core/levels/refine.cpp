@@ -3,6 +3,7 @@
 
 #include "rt_core/levels/interpolate.hpp"
 #include "rt_core/levels/leaf_contact.hpp"
+#include "rt_core/levels/recall.hpp"
 #include "rt_core/levels/start.hpp"
 #include "rt_core/levels/surface_stop.hpp"
 
@@ -88,11 +89,13 @@ void doubt(const Work& work, Node& node, bool refines) noexcept {
 }
 
 /// Keeps the contact of two pieces in the node, and reports it where refinement stops here and does
-/// not dive. One that a dive found before stays while it is one: it is the better guess.
+/// not dive. One of finer pieces, that a dive found before or that was remembered (recall.hpp),
+/// stays while it is one: it is the better guess.
 /// @return what leaf_contact() says; nothing where it was not asked
 LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops) noexcept {
   const bool dives = work.dives(node);
-  if (dives && has_dived(node) &&
+  const bool coarser = work.rules.exact && !stops;
+  if ((dives || coarser) && has_dived(node) &&
       remeasured(work.pair_of(node), node).distance < work.pair_of(node).delta)
     return {};
   const PairState& pair = work.pair_of(node);
@@ -112,6 +115,7 @@ LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops)
   work.note_cap(pair, contact);
   if (contact.distance >= pair.delta) return contact;
   keep(pair, a, b, contact, node);
+  remember(work, node);
   if (stops && !dives) work.add_contact(node, contact);
   return contact;
 }

@@ -3,6 +3,8 @@
 
 #include <bit>
 
+#include "rt_core/levels/recall.hpp"
+
 namespace palpate::levels {
 namespace {
 
@@ -179,6 +181,21 @@ void begin_searches(Work& work, double affordable) noexcept {
   for (const std::uint32_t index : work.tree.front()) clear(work.tree[index], kLooked);
 }
 
+/// Bodies that have just lost their last contact are searched for one at once, unless they touch
+/// where they have before. Simplified pieces may, where what is below them does not: bodies that
+/// had no contact in spite of it are searched.
+void recall_touches(Work& work, double affordable) noexcept {
+  if (!work.may_end || (work.rules.contact_dive && !work.rules.exact)) return;
+  const bool enough = is_affordable(work, kFrontCut * affordable);
+  for (std::size_t i = 0; i < work.memory.pairs.size(); ++i) {
+    PairState& pair = work.memory.pairs[i];
+    const bool touches = recall(work, i, enough);
+    pair.recalled = touches && pair.searches && !pair.recalled;
+    if (pair.recalled) pair.searches = false;
+    if (!touches && !enough) pair.searches = true;
+  }
+}
+
 /// What is farthest goes first: it is felt least.
 void cut_back(Work& work, double in_budget) noexcept {
   const double affordable = in_budget > kLeastAffordable ? in_budget : kLeastAffordable;
@@ -222,6 +239,7 @@ void start(Work& work) noexcept {
   for (PairState& pair : work.memory.pairs) place(work, pair);
   const double affordable = work.meter.queries_affordable(work.memory.query_ns);
   begin_searches(work, affordable);
+  recall_touches(work, affordable);
   cut_back(work, affordable);
   std::uint64_t kept = 0;
   const std::span<const std::uint32_t> front = work.tree.front();

@@ -10,9 +10,12 @@
 // place of it every thousand ticks. A row (CSV) a budget: ticks, ticks that the deadline ended, and
 // of those how far past it they were over, in microseconds: median, 99.9 %, 99.999 % and largest;
 // then the largest of those alone in which the thread was not interrupted, as far as its own clock
-// tells; the mean time of a work unit; and ticks that had no contact where there is one. Wants a
-// core of its own: `chrt -f 50 taskset -c 1 bench_overrun ...`.
+// tells; the mean time of a work unit; ticks that had no contact where the engine's exact query has
+// one, and those among them whose force is more than a twentieth of the largest; and the root mean
+// square error of the force over the largest (nrmse), both against the exact query. Wants a core of
+// its own: `chrt -f 50 taskset -c 1 bench_overrun ...`.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -30,6 +33,7 @@ constexpr SceneName kJaws{"jaws", "jaw_lower", "jaw_upper", true};
 constexpr int kPlaces = 2000;
 constexpr std::uint64_t kPass = 1000;  // ticks between leaps
 constexpr double kQuiet_us = 2;        // what reading two clocks leaves between them
+constexpr double kFelt = 0.05;         // of the largest force
 
 double us_since(std::uint64_t start_ns, std::uint64_t now_ns) {
   return 1e-3 * (static_cast<double>(now_ns) - static_cast<double>(start_ns));
@@ -59,15 +63,25 @@ class Walk {
 struct Place {
   Pose pose;
   bool touches = false;  ///< something is nearer than delta
+  Vec3d force_N;
 };
 
-std::vector<Place> places_of(const Body& a, const Body& b, double delta_m) {
-  Bench exact(a, b, {.engine = EngineKind::regions, .delta_m = delta_m, .exact = true});
+/// What the engine itself finds there without a budget.
+std::vector<Place> places_of(const Body& a, const Body& b, Settings settings) {
+  settings.exact = true;
+  Bench exact(a, b, settings);
   std::vector<Place> places;
-  for (const Pose& pose : motion(kJaws, a, b, delta_m, kPlaces)) {
-    places.push_back({pose, !exact.tick_at(pose).contacts.empty()});
+  for (const Pose& pose : motion(kJaws, a, b, settings.delta_m, kPlaces)) {
+    const TickResult r = exact.tick_at(pose);
+    places.push_back({pose, !r.contacts.empty(), r.wrench.force_N});
   }
   return places;
+}
+
+double peak_of(const std::vector<Place>& places) {
+  double peak = 0;
+  for (const Place& place : places) peak = std::max(peak, norm(place.force_N));
+  return peak;
 }
 
 struct Row {
@@ -75,6 +89,8 @@ struct Row {
   double undisturbed_us = 0;
   double busy_us = 0, units = 0;
   std::uint64_t lost = 0;
+  std::uint64_t lost_felt = 0;  ///< of these, with a force of more than kFelt of the peak
+  double square_error = 0;      ///< of the force over the peak, summed
 };
 
 /// Of a tick: `50` on the command line is microseconds, `50u` units.
@@ -97,6 +113,7 @@ Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, All
   Row row;
   row.over_us.reserve(ticks);
   bench.forget();
+  const double peak = peak_of(places);
   Walk walk;
   for (std::uint64_t i = 0; i < ticks; ++i) {
     const Place& place = places[walk.next()];
@@ -108,7 +125,11 @@ Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, All
     const double busy = us_since(processor_start, cli::processor_ns());
     row.busy_us += us_since(start, end);
     row.units += static_cast<double>(r.queries);
-    if (place.touches && r.contacts.empty()) ++row.lost;
+    row.square_error += squared_norm((1 / peak) * (r.wrench.force_N - place.force_N));
+    if (place.touches && r.contacts.empty()) {
+      ++row.lost;
+      if (norm(place.force_N) > kFelt * peak) ++row.lost_felt;
+    }
     if (!r.certificate.truncated_by_time) continue;
     const double over = us_since(budget.deadline_ns, end);
     row.over_us.push_back(static_cast<float>(over));
@@ -130,20 +151,22 @@ int measure(std::string_view engine, std::uint64_t ticks, int count, char** budg
   const double radius = std::min(a.view.header->radius_m, b.view.header->radius_m);
   Settings settings{.delta_m = 0.02 * radius, .exact = engine != "simplified"};
   if (engine == "regions") settings.engine = EngineKind::regions;
-  const std::vector<Place> places = places_of(a, b, settings.delta_m);
+  const std::vector<Place> places = places_of(a, b, settings);
   Bench bench(a, b, settings);
   std::puts(
       "engine,budget,ticks,ended_by_deadline,over_p50_us,over_p99.9_us,over_p99.999_us,"
-      "over_max_us,over_max_undisturbed_us,unit_us,lost");
+      "over_max_us,over_max_undisturbed_us,unit_us,lost,lost_felt,nrmse");
   for (int i = 0; i < count; ++i) {
     Row row = run(bench, places, ticks, Allowed(budgets[i]));
     std::sort(row.over_us.begin(), row.over_us.end());
-    std::printf("%.*s,%s,%llu,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%.3f,%llu\n",
+    std::printf("%.*s,%s,%llu,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%.3f,%llu,%llu,%.4f\n",
                 static_cast<int>(engine.size()), engine.data(), budgets[i],
                 static_cast<unsigned long long>(ticks), row.over_us.size(),
                 at_share(row.over_us, 0.5), at_share(row.over_us, 0.999),
                 at_share(row.over_us, 0.99999), at_share(row.over_us, 1), row.undisturbed_us,
-                row.busy_us / std::max(row.units, 1.0), static_cast<unsigned long long>(row.lost));
+                row.busy_us / std::max(row.units, 1.0), static_cast<unsigned long long>(row.lost),
+                static_cast<unsigned long long>(row.lost_felt),
+                std::sqrt(row.square_error / static_cast<double>(ticks)));
     std::fflush(stdout);
   }
   return 0;
