@@ -131,7 +131,7 @@ bool keep_if_touching(Work& work, const Touch& touch, const PairState& pair) noe
 }  // namespace
 
 void remember(Work& work, const Node& node) noexcept {
-  if (!work.may_end) return;
+  if (!remembers(work)) return;
   constexpr std::uint32_t kGolden = 0x9e3779b1u;  // spreads numbers that follow each other
   const std::uint32_t part = part_of(work.pair_of(node), node.piece_a);
   touches_of(work, node.pair)[(part * kGolden) >> (32 - kTouchBits)] = {

@@ -9,6 +9,12 @@
 
 namespace palpate::levels {
 
+/// Exact queries with a budget do. Where simplified pieces are the answer, of a level that the
+/// settings choose, what others gave would not last.
+[[nodiscard]] inline bool remembers(const Work& work) noexcept {
+  return work.rules.exact && work.meter.limited();
+}
+
 /// Notes that the pieces of a node give the contact that it keeps: in place of the last one there
 /// (QueryMemory::touches), so that what is remembered lies all over the surface. O(levels)
 void remember(Work& work, const Node& node) noexcept;

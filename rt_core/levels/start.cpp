@@ -185,7 +185,7 @@ void begin_searches(Work& work, double affordable) noexcept {
 /// where they have before. Simplified pieces may, where what is below them does not: bodies that
 /// had no contact in spite of it are searched.
 void recall_touches(Work& work, double affordable) noexcept {
-  if (!work.may_end || (work.rules.contact_dive && !work.rules.exact)) return;
+  if (!remembers(work)) return;
   const bool enough = is_affordable(work, kFrontCut * affordable);
   for (std::size_t i = 0; i < work.memory.pairs.size(); ++i) {
     PairState& pair = work.memory.pairs[i];

@@ -156,5 +156,26 @@ TEST(EngineTruncation, contact_between_teeth_is_found_again_by_the_smallest_budg
   }
 }
 
+// Fast to and fro between the same teeth: what slides off one of them comes to another that has
+// been touched before.
+TEST(EngineTruncation, teeth_that_have_touched_are_felt_again_at_once) {
+  static const BakedBody a{bake::make_model("jaw_lower", 2000)};
+  static const BakedBody b{bake::make_model("jaw_upper", 2000)};
+  for (const std::uint64_t units : {20u, 32u, 50u}) {
+    BakedScene scene({a.view, b.view}, {{0, 1}},
+                     {.delta_m = 6e-4, .exact = true, .cluster_radius_m = 1e-3});
+    int none = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const Pose poses[2] = {{{6e-4 * std::sin(0.6 * i), 6e-4 * std::cos(0.35 * i), 0},
+                              turn({0.02 * std::sin(0.5 * i), 0.016 * std::cos(0.37 * i), 0})},
+                             {}};
+      const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
+      none += r.contacts.empty() ? 1 : 0;
+    }
+    RecordProperty("none_" + std::to_string(units), none);
+    EXPECT_LE(none, 60) << units << " units";
+  }
+}
+
 }  // namespace
 }  // namespace palpate::test
