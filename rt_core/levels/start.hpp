@@ -18,10 +18,12 @@ namespace palpate::levels {
 /// first one where the budget is less than two units for each near node: the cut stays as deep as
 /// it is, up to 512 nodes, and the smallest pieces are measured and split first, each once before
 /// any comes again. Measuring such a front node by node would be all that the budget does for, in
-/// every tick anew. Nodes are near by their motion bounds and, where these have run out, by their
-/// spheres at the present pose; without Rules::motion_bounds by the spheres alone. What the query
-/// of the roots proves holds for every pair of pieces below them. O(front), and a query for each
-/// pair of bodies.
+/// every tick anew. In exact queries with a budget what bodies have touched with of late is
+/// measured again before the cut (recall.hpp), and bodies that have just lost their last contact,
+/// and do not touch there, are searched at once. Nodes are near by their motion bounds and, where
+/// these have run out, by their spheres at the present pose; without Rules::motion_bounds by the
+/// spheres alone. What the query of the roots proves holds for every pair of pieces below them.
+/// O(front), and for each pair of bodies a query and what recall() takes.
 void start(Work& work) noexcept;
 
 /// Puts a node on the queue if it is near.
