@@ -143,7 +143,8 @@ bool recall(Work& work, std::size_t index, bool enough) noexcept {
   const std::span<const Touch> known = touches_of(work, index);
   bool touches = keeps_contact(work, index);
   if (touches && enough) return true;
-  const double reach = touches ? pair.delta : kInfinity;
+  double reach = kInfinity;
+  if (touches) reach = pair.delta;
   const std::size_t most = work.memory.waiting.size();
   for (std::uint32_t i = 0; i < kTouches && work.waiting.items().size() < most; ++i) {
     if (known[i].a == kNone) continue;

@@ -50,10 +50,9 @@ Wrench SteadyQuery::believed(const TickResult& found, const Vec6& way, const Vec
                           double most) {
     // Where no contact is found, no more is felt than the doubt leaves possible.
     const double changed = norm(apart ? part.believed() : told - part.told());
-    const double certain =
-        std::max({changed - arm * doubts_N, norm(modelled) - arm * slope_N, 0.0});
-    return part.follow(told, {begun_ ? certain : kInfinity, arm * stiffness_N_per_m_ * motion_m,
-                              kLeastShare * most});
+    double certain = std::max({changed - arm * doubts_N, norm(modelled) - arm * slope_N, 0.0});
+    if (!begun_) certain = kInfinity;
+    return part.follow(told, {certain, arm * stiffness_N_per_m_ * motion_m, kLeastShare * most});
   };
   const Wrench out{follow(force_N_, found.wrench.force_N, linear(fall), 1, most_N_),
                    follow(torque_Nm_, found.wrench.torque_Nm, angular(fall), arm_m_, most_Nm_)};
