@@ -14,8 +14,9 @@ namespace palpate::regions {
 /// if 64 regions are to be seen.
 ///
 /// Proves nothing; witnesses are at the present poses as before. Where an image cannot be looked up
-/// in, nothing.
+/// in, nothing. Takes the queue of the query's memory as scratch.
 /// @param units  work units to be used, at most, to a batch
+/// Cost: the units, plus a pass over all active regions a round, of at most 64.
 void survey(Work& work, double units) noexcept;
 
 }  // namespace palpate::regions

@@ -9,13 +9,14 @@
 #include <vector>
 
 #include "tests/support/effort.hpp"
-#include "tools/bench/scenes.hpp"
+#include "tools/bench/bench_query.hpp"
 #include "tools/realtime/steady_query.hpp"
 
 namespace palpate::test {
 namespace {
 
 using bench::Bench;
+using bench::BenchQuery;
 using bench::Body;
 
 constexpr double kPeriod_s = 1e-3;
@@ -43,18 +44,6 @@ std::vector<Pose> poses(bool fast) {
   for (std::size_t i = 0; i < kTicks; ++i) out.push_back(rolled().way[fast ? kFaster * i : i]);
   return out;
 }
-
-class BenchQuery final : public realtime::ContactQuery {
- public:
-  explicit BenchQuery(Bench& bench) : bench_(bench) {}
-  Status tick(const Pose& tool, const Budget& budget, TickResult& out) noexcept override {
-    out = bench_.tick_at(tool, budget);
-    return Status::ok;
-  }
-
- private:
-  Bench& bench_;
-};
 
 /// Forces tick by tick.
 struct Forces {

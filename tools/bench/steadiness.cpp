@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/bench/scenes.hpp"
+#include "tools/bench/bench_query.hpp"
 #include "tools/realtime/steady_query.hpp"
 
 namespace palpate::bench {
@@ -33,18 +33,6 @@ constexpr std::size_t kStart = 50;  // ticks that follow the start and are not c
 constexpr std::uint64_t kUnlimited = Budget{}.units;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr realtime::SteadyRates kNotSteadied{kInfinity, kInfinity};
-
-class BenchQuery final : public realtime::ContactQuery {
- public:
-  explicit BenchQuery(Bench& bench) : bench_(bench) {}
-  Status tick(const Pose& tool, const Budget& budget, TickResult& out) noexcept override {
-    out = bench_.tick_at(tool, budget);
-    return Status::ok;
-  }
-
- private:
-  Bench& bench_;
-};
 
 struct Setting {
   const char* name;
