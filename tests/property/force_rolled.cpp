@@ -22,8 +22,9 @@ using bench::Body;
 constexpr double kPeriod_s = 1e-3;
 constexpr double kDeltaRel = 0.02;
 constexpr std::size_t kTicks = effort<std::size_t>(640, 100);
-constexpr std::size_t kStart = 50;  // ticks that follow the start and are not compared
-constexpr std::size_t kFaster = 3;  // 0.37 m/s: every third pose of a way at 0.12 m/s
+constexpr bool kWhole = effort(true, false);  // the beginning alone has few corners to compare
+constexpr std::size_t kStart = 50;            // ticks that follow the start and are not compared
+constexpr std::size_t kFaster = 3;            // 0.37 m/s: every third pose of a way at 0.12 m/s
 constexpr std::uint64_t kUnlimited = Budget{}.units;
 
 struct Rolled {
@@ -82,7 +83,9 @@ class RolledEllipsoid : public testing::TestWithParam<bool> {
     const Forces f = forces(way_, settings, units);
     const std::vector<Vec3d>& exact = settings.engine == EngineKind::levels ? levels_ : regions_;
     EXPECT_LE(largest_step(f.felt), 1.5 * largest_step(exact));
-    EXPECT_LE(bench::nrmse(f.felt, exact, kStart), bench::nrmse(f.found, exact, kStart) + 0.01);
+    if (kWhole) {
+      EXPECT_LE(bench::nrmse(f.felt, exact, kStart), bench::nrmse(f.found, exact, kStart) + 0.01);
+    }
   }
 
   const std::vector<Pose> way_ = poses(GetParam());
@@ -116,6 +119,7 @@ TEST_P(RolledEllipsoid, of_an_exact_query_is_left_alone) {
 }
 
 TEST_P(RolledEllipsoid, without_steadying_it_is_worse) {
+  if (!kWhole) GTEST_SKIP() << "the beginning of the way has no such corner";
   EXPECT_GT(largest_step(forces(way_, {.s0 = 0.005}).found), 1.7 * largest_step(levels_));
   EXPECT_GT(largest_step(forces(way_, {.s0 = 0.05}).found), 5 * largest_step(levels_));
 }
