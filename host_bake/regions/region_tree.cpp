@@ -10,6 +10,7 @@
 #include "host_bake/base/parallel.hpp"
 #include "host_bake/mesh/topology.hpp"
 #include "host_bake/metrics/vector.hpp"
+#include "host_bake/regions/even_order.hpp"
 #include "host_bake/regions/fitted_box.hpp"
 #include "rt_core/image/format.hpp"
 
@@ -225,19 +226,17 @@ class Builder {
             double(node.centre[2][r.slot])};
   }
 
-  /// Each next is the one whose centre is farthest from those of all before it (Gonzalez 1985).
+  /// Regions that touch are two mean radii apart.
   void rank_regions() {
-    std::vector<double> squared(out_.regions.size(), std::numeric_limits<double>::max());
-    std::size_t next = 0;
-    for (std::uint32_t rank = 0; rank < out_.regions.size(); ++rank) {
-      out_.regions[next].rank = rank;
-      const Vec3d from = centre_of(out_.regions[next]);
-      squared[next] = -1;
-      for (std::size_t i = 0; i < squared.size(); ++i) {
-        squared[i] = std::min(squared[i], squared_norm(centre_of(out_.regions[i]) - from));
-      }
-      next = std::size_t(std::max_element(squared.begin(), squared.end()) - squared.begin());
+    std::vector<Vec3d> centres;
+    double radii = 0;
+    for (const image::Region& r : out_.regions) {
+      centres.push_back(centre_of(r));
+      radii += double(r.radius);
     }
+    const std::vector<std::uint32_t> places =
+        even_order(centres, 2 * radii / double(centres.size()));
+    for (std::size_t i = 0; i < places.size(); ++i) out_.regions[i].rank = places[i];
   }
 
   void fill_triangles() {

@@ -55,7 +55,7 @@ struct Region {
   std::uint32_t slot;    ///< ... and which child of it the root is
   float reach;           ///< farthest point from the object's centre, rounded up
   float radius;          ///< half the diagonal of its root's box, rounded up
-  std::uint32_t rank;    ///< place in an order of which every beginning is spread over the surface
+  std::uint32_t rank;    ///< place in an order whose every beginning is spread as all regions are
   std::uint32_t reserved[3];
 };
 static_assert(sizeof(Region) == 32);

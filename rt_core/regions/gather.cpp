@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/gather.hpp"
 
+#include <limits>
+
 #include "rt_core/regions/motion.hpp"
 #include "rt_core/regions/pair_batch.hpp"
 
@@ -12,9 +14,19 @@ using levels::PairState;
 /// A move by more than this (in units), or by this many delta where that is more, starts anew.
 constexpr double kJump = 0.05;
 constexpr double kJumpDelta = 2;
+/// Under a budget a sweep may take this share of a tick, or so many units where that is more. It
+/// tells what is far: of surfaces that are near all over, little, and that costs most.
+constexpr double kMostSwept = 0.04;
+constexpr double kLeastSwept = 128;
 
 /// Rounded towards minus infinity far enough for float.
 float float_below(double v) noexcept { return static_cast<float>(v - 1e-7 * (v < 0 ? -v : v)); }
+
+void limit_sweep(Work& work) noexcept {
+  const double share = kMostSwept * work.units_of_tick();
+  if (share == std::numeric_limits<double>::infinity()) return;
+  work.pace.limit(static_cast<std::uint64_t>(share > kLeastSwept ? share : kLeastSwept));
+}
 
 void sweep_if_lost(Work& work, std::uint32_t index) noexcept {
   QueryMemory& memory = work.memory;
@@ -25,8 +37,10 @@ void sweep_if_lost(Work& work, std::uint32_t index) noexcept {
   work.swept = true;
   memory.containment[index].doubtful = true;
   const std::span<float> swept = memory.swept.first(pair.image_a->regions.size());
+  limit_sweep(work);
   sweep(*memory.kernels, memory.frames[index], *memory.search, work.pace,
         static_cast<float>(pair.delta + margin_of(pair)), swept);
+  work.pace.no_limit();
   for (std::uint32_t i = 0; i < swept.size(); ++i) {
     RegionState& state = memory.states[memory.first_state[index] + i];
     state.near.count = 0;

@@ -34,7 +34,7 @@ constexpr double kUnitsToFollow = 16;
 /// which end when they have taken too much together.
 constexpr double kTicksToSurvey = 2.5;
 constexpr std::uint32_t kProbes = 3;
-constexpr double kMostSurveyed = 0.9;
+constexpr double kMostSurveyed = 0.97;
 constexpr double kFewestToSurvey = 64;
 constexpr double kMostProbed = 1e6;  ///< units a region; no search takes as many
 /// Then following takes this share of what is left, the larger where it brings witnesses nearer
@@ -56,9 +56,6 @@ struct MoreUrgent {
     return of_a > of_b || (of_a == of_b && scattered(a) < scattered(b));
   }
 };
-
-/// Until ticks have told how long a work unit takes.
-constexpr std::uint64_t kAssumedUnit_ns = 70;
 
 class Narrowing {
  public:
@@ -166,8 +163,7 @@ class Narrowing {
   /// nearest are what the rest of the tick is for.
   void survey_where_far_to_go() noexcept {
     if (!work_.pace.go_on()) return;
-    const std::uint64_t unit_ns = pursuit_.unit_ns > 0 ? pursuit_.unit_ns : kAssumedUnit_ns;
-    const double units = work_.meter.queries_in_all(unit_ns);
+    const double units = work_.units_of_tick();
     const double each = units / work_.count;
     if (units < kFewestToSurvey || each > kMostProbed ||
         !can_look(work_.frame_of(work_.active()[0])))
@@ -176,7 +172,7 @@ class Narrowing {
                                                            : probed(kTicksToSurvey * each) / each;
     if (!work_.pace.go_on() || ticks < kTicksToSurvey) return;
     lags_ = work_.followed = true;
-    survey(work_, kMostSurveyed * units);
+    survey(work_, kMostSurveyed);
   }
 
   /// Work units that a search takes, of a few that lie apart; infinite where they take

@@ -10,31 +10,31 @@ namespace {
 /// So many regions tell a force. With fewer looks than these they meet nothing near.
 constexpr double kTelling = 64;
 constexpr double kFewestLooks = 4;
-/// Spread over a region, and beside the nearest.
-constexpr double kKinds = 2;
+/// Beside the nearest, of each that is spread over a region.
+constexpr double kBeside = 0.75;
 constexpr double kUnitsPerLook = 1.0 / kLooksPerUnit + static_cast<double>(kBatchUnits) / kBatch;
 constexpr std::uint32_t kRegionsPerRound = 16;
 constexpr std::uint32_t kMostRounds = 64;  ///< each passes over all active regions
 
 class Survey {
  public:
-  Survey(Work& work, double units) noexcept
-      : work_(work),
-        end_(static_cast<double>(work.pace.used()) + units),
-        round_of_(work.memory.queue),
-        batch_(work, Take{this}) {
+  Survey(Work& work, double share) noexcept
+      : work_(work), share_(share), round_of_(work.memory.queue), batch_(work, Take{this}) {
     const double telling = work.count < kTelling ? work.count : kTelling;
-    const double each = units / (telling * kKinds * kUnitsPerLook);
+    const double units = share * work.units_of_tick();
+    const double each = units / (telling * (1 + kBeside) * kUnitsPerLook);
     looks_ = static_cast<std::uint32_t>(each < kFewestLooks ? kFewestLooks
                                         : each < kMostLooks ? each
                                                             : kMostLooks);
+    beside_ = static_cast<std::uint32_t>(kBeside * looks_);
     const std::uint32_t rounds = work.count / kRegionsPerRound + 1;
     rounds_ = rounds < kMostRounds ? rounds : kMostRounds;
   }
 
   void run() noexcept {
     for (std::uint32_t i = 0; i < work_.count; ++i) round_of_[i] = round_of(work_.active()[i]);
-    for (std::uint32_t round = 0; round < rounds_ && goes_on(); ++round) {
+    for (std::uint32_t round = 0; round < rounds_ && work_.pace.go_on(); ++round) {
+      if (round > 0 && !has_units_for(round)) break;
       spread_ = true;
       for_each(round, [this](std::uint32_t i) { look_into(work_, i, looks_, batch_); });
       spread_ = false;
@@ -51,19 +51,29 @@ class Survey {
     }
   };
 
-  bool goes_on() noexcept {
-    return static_cast<double>(work_.pace.used()) < end_ && work_.pace.go_on();
-  }
-
   std::uint32_t round_of(const Active& item) const noexcept {
     const auto regions = work_.pair_of(item).image_a->regions;
     return static_cast<std::uint32_t>(std::uint64_t{regions[item.region].rank} * rounds_ /
                                       regions.size());
   }
 
+  /// A round that is begun is ended, as far as that can be told: half of one is of one side.
+  bool has_units_for(std::uint32_t round) const noexcept {
+    std::uint32_t regions = 0;
+    for (std::uint32_t i = 0; i < work_.count; ++i) regions += round_of_[i] == round ? 1u : 0u;
+    const auto used = static_cast<double>(work_.pace.used());
+    return used + regions * (looks_ + beside_) * kUnitsPerLook <= share_ * (used + affordable());
+  }
+
+  /// Work units that the tick has left, at the pace that it has had.
+  double affordable() const noexcept {
+    const std::uint64_t used = work_.pace.used();
+    return work_.meter.queries_affordable(work_.meter.elapsed_ns() / (used > 0 ? used : 1));
+  }
+
   /// Calls a function with every active region of a round, and measures what it adds.
   void for_each(std::uint32_t round, auto visit) noexcept {
-    for (std::uint32_t i = 0; i < work_.count && goes_on(); ++i) {
+    for (std::uint32_t i = 0; i < work_.count && work_.pace.go_on(); ++i) {
       if (round_of_[i] == round && can_look(work_.frame_of(work_.active()[i]))) visit(i);
     }
     batch_.measure_all();
@@ -74,7 +84,7 @@ class Survey {
     if (!work_.is_felt(item)) return;
     Witness found[kMostLooks];
     const std::uint32_t count =
-        look_beside(work_.frame_of(item), item.region, work_.witness_of(item).a, looks_, found);
+        look_beside(work_.frame_of(item), item.region, work_.witness_of(item).a, beside_, found);
     work_.pace.charge(count / kLooksPerUnit);
     for (std::uint32_t k = 0; k < count; ++k) batch_.add(index, found[k]);
   }
@@ -82,18 +92,21 @@ class Survey {
   void take(std::uint32_t index, const Witness& pair) noexcept {
     const Active& item = work_.active()[index];
     RegionState& state = work_.state_of(item);
-    if (spread_) note_seed(*work_.frame_of(item).a, pair, state.seeds);
     const bool was_felt = work_.is_felt(item);
-    if (!state.witness.known() || pair.distance < state.witness.distance) state.witness = pair;
+    if (state.witness.known() && !(pair.distance < state.witness.distance)) return;
+    state.witness = pair;
+    // Every look as a seed would cost a fifth of the survey.
+    if (spread_) note_seed(*work_.frame_of(item).a, pair, state.seeds);
     // Contacts take time, too: no more are sought than can be told.
     if (!was_felt && work_.is_felt(item)) work_.meter.expect_contacts(++felt_);
   }
 
   Work& work_;
-  double end_;  // in work units
+  double share_;
   std::span<std::uint32_t> round_of_;
   PairBatch<Take> batch_;
-  std::uint32_t looks_ = 0;  // of either kind
+  std::uint32_t looks_ = 0;   // spread over a region
+  std::uint32_t beside_ = 0;  // beside the nearest of them
   std::uint32_t rounds_ = 0;
   bool spread_ = true;  // which kind is measured
   std::uint64_t felt_ = 0;
@@ -101,8 +114,8 @@ class Survey {
 
 }  // namespace
 
-void survey(Work& work, double units) noexcept {
-  if (work.count > 0) Survey(work, units).run();
+void survey(Work& work, double share) noexcept {
+  if (work.count > 0) Survey(work, share).run();
 }
 
 }  // namespace palpate::regions

@@ -49,6 +49,13 @@ struct Work {
     return static_cast<double>(item.width) * pair_of(item).unit_m;
   }
 
+  /// Work units that the whole tick does for, about; infinity where nothing limits it.
+  [[nodiscard]] double units_of_tick() const noexcept {
+    constexpr std::uint64_t kAssumedUnit_ns = 70;  // until ticks have told
+    const std::uint64_t unit_ns = memory.pursuit.unit_ns;
+    return meter.queries_in_all(unit_ns > 0 ? unit_ns : kAssumedUnit_ns);
+  }
+
   /// A region whose bounds have changed: sets its width and urgency.
   void widen(Active& item) noexcept;
   void widen_all() noexcept;

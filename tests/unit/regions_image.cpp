@@ -2,11 +2,14 @@
 // The region sections of an image: what the baker makes, and what validate() refuses of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <random>
 
 #include "host_bake/mesh/mesh.hpp"
+#include "host_bake/regions/even_order.hpp"
 #include "host_bake/regions/region_tree.hpp"
 #include "rt_core/regions/region_triangle.hpp"
 #include "tests/support/baked_scene.hpp"
@@ -198,7 +201,26 @@ double least_cosine(const bake::RegionTree& tree) {
   return least;
 }
 
-TEST(RegionTree, Every_beginning_of_the_ranks_is_spread_over_the_surface) {
+/// Of the first 16, 64 and 256 about each place the same part lies within a distance as of all.
+void expect_even(const std::vector<Vec3d>& ordered, double distance) {
+  for (const std::size_t first : {16u, 64u, 256u}) {
+    double farthest_off = 0;
+    for (const Vec3d& place : ordered) {
+      double of_all = 0;
+      double of_first = 0;
+      for (std::size_t i = 0; i < ordered.size(); ++i) {
+        if (norm(ordered[i] - place) > distance) continue;
+        ++of_all;
+        of_first += i < first ? 1 : 0;
+      }
+      const double off = of_first - double(first) * of_all / double(ordered.size());
+      farthest_off = std::max(farthest_off, std::abs(off));
+    }
+    EXPECT_LE(farthest_off, 0.75 * std::sqrt(double(first))) << first;
+  }
+}
+
+TEST(RegionTree, Every_beginning_of_the_ranks_is_spread_as_all_regions_are) {
   const bake::RegionTree tree = tree_of(bumpy_ball(80, 100, 1), 0.02);
   const std::size_t count = tree.regions.size();
   ASSERT_GT(count, 64u);
@@ -212,20 +234,29 @@ TEST(RegionTree, Every_beginning_of_the_ranks_is_spread_over_the_surface) {
                       double(node.centre[2][r.slot])};
   }
   for (const int n : times) EXPECT_EQ(n, 1);
-  // No place is farther from the first ones than these are from one another.
-  for (const std::size_t first : {4u, 16u, 64u}) {
-    double closest = 1e9;
-    double farthest = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      double nearest = 1e9;
-      for (std::size_t k = 0; k < first; ++k) {
-        if (k != i) nearest = std::min(nearest, norm(ranked[i] - ranked[k]));
-      }
-      if (i < first) closest = std::min(closest, nearest);
-      if (i >= first) farthest = std::max(farthest, nearest);
-    }
-    EXPECT_LE(farthest, closest * (1 + 1e-12)) << first;
+  expect_even(ranked, 0.7);
+}
+
+TEST(EvenOrder, Every_beginning_is_dense_where_all_are) {
+  std::vector<Vec3d> points;
+  for (int i = 0; i < 10; ++i) {
+    for (int k = 0; k < 10; ++k) points.push_back({0.1 * i, 0.1 * k, 0});
   }
+  for (int i = 0; i < 20; ++i) {
+    for (int k = 0; k < 20; ++k) points.push_back({1 + 0.05 * i, 0.05 * k, 0});
+  }
+  const std::vector<std::uint32_t> places = bake::even_order(points, 0.1);
+  std::vector<Vec3d> ordered(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) ordered[places[i]] = points[i];
+  expect_even(ordered, 0.3);
+}
+
+TEST(EvenOrder, Takes_points_that_coincide_and_none) {
+  EXPECT_TRUE(bake::even_order({}, 1).empty());
+  const std::vector<Vec3d> same(5);
+  std::vector<std::uint32_t> places = bake::even_order(same, 1);
+  std::sort(places.begin(), places.end());
+  EXPECT_EQ(places, (std::vector<std::uint32_t>{0, 1, 2, 3, 4}));
 }
 
 TEST(RegionTree, Opposite_walls_are_in_different_regions) {
