@@ -28,11 +28,12 @@ void limit_sweep(Work& work) noexcept {
   work.pace.limit(static_cast<std::uint64_t>(share > kLeastSwept ? share : kLeastSwept));
 }
 
-void sweep_if_lost(Work& work, std::uint32_t index) noexcept {
+/// @return whether all regions of the pair have been proved anew
+bool sweep_if_lost(Work& work, std::uint32_t index) noexcept {
   QueryMemory& memory = work.memory;
   PairState& pair = memory.pairs[index];
   const double far = kJumpDelta * pair.delta > kJump ? kJumpDelta * pair.delta : kJump;
-  if (!pair.fresh && last_motion(pair) <= far) return;
+  if (!pair.fresh && last_motion(pair) <= far) return false;
   pair.fresh = false;
   work.swept = true;
   memory.containment[index].doubtful = true;
@@ -47,10 +48,12 @@ void sweep_if_lost(Work& work, std::uint32_t index) noexcept {
     state.seeds.count = 0;
     prove(state, pair, i, sqrt_of(swept[i]) - kRounding);
   }
+  return true;
 }
 
 /// The regions of a pair that may be nearer than delta.
-void gather_regions(Work& work, std::uint32_t index) noexcept {
+/// @param swept  in this tick: no region has moved since its proof
+void gather_regions(Work& work, std::uint32_t index, bool swept) noexcept {
   QueryMemory& memory = work.memory;
   const PairState& pair = memory.pairs[index];
   const std::uint32_t first = memory.first_state[index];
@@ -59,7 +62,7 @@ void gather_regions(Work& work, std::uint32_t index) noexcept {
   for (std::uint32_t i = 0; i < regions.size(); ++i) {
     const RegionState& state = memory.states[first + i];
     if (static_cast<double>(state.lower) - way_since(state, pair) >= far) continue;
-    const double moved_by = moved_since(state, pair, i);
+    const double moved_by = swept ? kMotionSlack : moved_since(state, pair, i);
     const double lower = static_cast<double>(state.lower) - moved_by;
     if (lower >= pair.delta) {
       if (lower < far) work.result.open_m += (far - lower) * pair.unit_m;
@@ -123,8 +126,7 @@ void measure_near_pairs(Work& work) noexcept {
 void gather(Work& work) noexcept {
   for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
     work.memory.frames[i] = frame_of(work.memory.pairs[i]);
-    sweep_if_lost(work, i);
-    gather_regions(work, i);
+    gather_regions(work, i, sweep_if_lost(work, i));
   }
   measure_witnesses(work);
   measure_near_pairs(work);
