@@ -10,14 +10,14 @@ namespace palpate::regions {
 /// then of three quarters as many beside that. Rounds of some sixteen regions each follow the order
 /// in which they are spread over the surface (image::Region::rank), so that whatever ends it has
 /// seen evenly of everywhere: a force is told by few contacts from all sides (crowd.hpp), and told
-/// wrong by many from one. A round begins if there seem to be units and time for all of it. Each
-/// region has four to kMostLooks looks, as many as there are units for if 64 regions are to be
-/// seen.
+/// wrong by many from one. The first twelve are repeated up to eight times, with other places,
+/// before others begin. A round begins if there seem to be units and time for all of it. A region
+/// has four to kMostLooks looks in a round, as many as there are units for if 64 are to be seen.
 ///
 /// Proves nothing; witnesses are at the present poses as before. Where an image cannot be looked up
 /// in, nothing. Takes the queue of the query's memory as scratch.
 /// @param share  of the tick's units and time, within what the budget leaves
-/// Cost: the share, plus two passes over all active regions a round, of at most 64.
+/// Cost: the share, plus three passes over all active regions a round, of at most 148.
 void survey(Work& work, double share) noexcept;
 
 }  // namespace palpate::regions
