@@ -147,6 +147,11 @@ class Narrowing {
   /// For most of the budget where that brings witnesses nearer, else for as much as it takes to
   /// see when it does. After a jump there is nothing to see yet.
   void follow_witnesses() noexcept {
+    if (!work_.swept && pursuit_.surveyed < 1) {
+      const double before = pursuit_.surveyed;
+      survey(work_, kMostSurveyed);
+      if (pursuit_.surveyed > before) return;  // else the budget is too small for a round
+    }
     const Yield& by_search = pursuit_.search;
     const Yield& by_follow = pursuit_.follow;
     const double units = affordable();

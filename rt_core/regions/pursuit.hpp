@@ -28,6 +28,7 @@ struct Pursuit {
   double search_units = 0;      ///< what a search takes, of late
   std::uint32_t searches = 0;   ///< of which that is the mean, at most kMostSearches
   bool lagged = false;          ///< searches did not keep up with the last tick
+  double surveyed = 1;          ///< which part of all regions has been, since the last jump
   std::uint32_t round = 0;      ///< ticks in which witnesses were followed
   std::uint32_t next_dive = 0;  ///< where the next one begins to dive
   std::uint64_t unit_ns = 0;    ///< time of a work unit; 0: not known

@@ -37,14 +37,8 @@ class Survey {
 
   void run() noexcept {
     for (std::uint32_t i = 0; i < work_.count; ++i) round_of_[i] = round_of(work_.active()[i]);
-    const std::uint32_t telling = rounds_ < kTellingRounds ? rounds_ : kTellingRounds;
-    const std::uint32_t repeated = kMostRepeats * telling;
-    see(0);
-    for (std::uint32_t i = 1; i < repeated + rounds_ - telling; ++i) {
-      const std::uint32_t round = i < repeated ? i % telling : i - repeated + telling;
-      if (!has_units_for(round)) break;
-      see(round);
-    }
+    const double done = work_.swept ? begin() : go_on();
+    work_.memory.pursuit.surveyed = done / rounds_;
     work_.widen_all();
   }
 
@@ -55,6 +49,26 @@ class Survey {
       survey->take(index, pair);
     }
   };
+
+  /// @return how many rounds have been seen
+  std::uint32_t begin() noexcept {
+    const std::uint32_t telling = rounds_ < kTellingRounds ? rounds_ : kTellingRounds;
+    const std::uint32_t repeated = kMostRepeats * telling;
+    see(0);
+    std::uint32_t i = 1;
+    for (; i < repeated + rounds_ - telling; ++i) {
+      const std::uint32_t round = i < repeated ? i % telling : i - repeated + telling;
+      if (!has_units_for(round)) break;
+      see(round);
+    }
+    return i < telling ? i : i < repeated ? telling : i - repeated + telling;
+  }
+
+  std::uint32_t go_on() noexcept {
+    auto round = static_cast<std::uint32_t>(work_.memory.pursuit.surveyed * rounds_ + 0.5);
+    while (round < rounds_ && has_units_for(round)) see(round++);
+    return round;
+  }
 
   std::uint32_t round_of(const Active& item) const noexcept {
     const auto regions = work_.pair_of(item).image_a->regions;

@@ -13,6 +13,8 @@ namespace palpate::regions {
 /// wrong by many from one. The first twelve are repeated up to eight times, with other places,
 /// before others begin. A round begins if there seem to be units and time for all of it. A region
 /// has four to kMostLooks looks in a round, as many as there are units for if 64 are to be seen.
+/// In ticks that are none after a jump, goes on where the last survey ended (Pursuit::surveyed),
+/// round by round.
 ///
 /// Proves nothing; witnesses are at the present poses as before. Where an image cannot be looked up
 /// in, nothing. Takes the queue of the query's memory as scratch.

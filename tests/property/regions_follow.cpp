@@ -194,6 +194,27 @@ TEST(RegionsFollow, ticks_after_a_jump_feel_some_of_everywhere) {
   }
 }
 
+/// What the first tick had no time to look at is looked at in those that follow.
+TEST(RegionsFollow, soon_after_a_jump_what_is_near_is_known) {
+  constexpr int kSoon = 8;
+  BakedScene exact = scene();
+  BakedScene cut = scene();
+  double peak_N = 0;
+  double squares = 0;
+  double known = 0;
+  for (int i = 0; i < 2 * kSoon; ++i) {
+    const TickResult truth = tick_at(exact, i);
+    const TickResult r = tick_at(cut, i, {.units = 1000});
+    known = static_cast<double>(r.contacts.size()) / static_cast<double>(truth.contacts.size());
+    peak_N = std::max(peak_N, norm(truth.wrench.force_N));
+    if (i >= kSoon) squares += squared_norm(r.wrench.force_N - truth.wrench.force_N) / kSoon;
+  }
+  RecordProperty("known", std::to_string(known));
+  RecordProperty("error", std::to_string(std::sqrt(squares) / peak_N));
+  EXPECT_GT(known, 0.9);
+  EXPECT_LT(std::sqrt(squares) / peak_N, 0.15);
+}
+
 TEST(RegionsFollow, a_copy_goes_on_with_the_same_bits) {
   BakedScene one = scene();
   for (int i = 0; i < kTicks; ++i) tick_at(one, i, {.units = 1000});
