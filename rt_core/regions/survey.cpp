@@ -65,7 +65,9 @@ class Survey {
   }
 
   std::uint32_t go_on() noexcept {
-    auto round = static_cast<std::uint32_t>(work_.memory.pursuit.surveyed * rounds_ + 0.5);
+    const double done = work_.memory.pursuit.surveyed * rounds_;
+    std::uint32_t round = 0;
+    while (round + 0.5 < done) ++round;
     while (round < rounds_ && has_units_for(round)) see(round++);
     return round;
   }
