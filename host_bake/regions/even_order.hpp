@@ -18,7 +18,8 @@ namespace palpate::bake {
 /// Smola 2010). Farthest points first spread evenly over space instead, and stay there too few
 /// where points are dense.
 /// @param near  below such distances points count as one place; > 0, in the points' units
-/// @return of every point its place; each once. The same on all machines. O(n^2)
+/// @return of every point its place; each once. Deterministic, also across numbers of threads.
+/// O(n^2)
 std::vector<std::uint32_t> even_order(std::span<const Vec3d> points, double near);
 
 }  // namespace palpate::bake

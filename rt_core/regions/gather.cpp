@@ -37,6 +37,7 @@ bool sweep_if_lost(Work& work, std::uint32_t index) noexcept {
   pair.fresh = false;
   work.swept = true;
   memory.containment[index].doubtful = true;
+  memory.pursuit.surveyed = 1;  // what a survey had left of another place is none of this one
   const std::span<float> swept = memory.swept.first(pair.image_a->regions.size());
   limit_sweep(work);
   sweep(*memory.kernels, memory.frames[index], *memory.search, work.pace,

@@ -147,11 +147,7 @@ class Narrowing {
   /// For most of the budget where that brings witnesses nearer, else for as much as it takes to
   /// see when it does. After a jump there is nothing to see yet.
   void follow_witnesses() noexcept {
-    if (!work_.swept && pursuit_.surveyed < 1) {
-      const double before = pursuit_.surveyed;
-      survey(work_, kMostSurveyed);
-      if (pursuit_.surveyed > before) return;  // else the budget is too small for a round
-    }
+    if (!work_.swept && pursuit_.surveyed < 1 && survey(work_, kMostSurveyed)) return;
     const Yield& by_search = pursuit_.search;
     const Yield& by_follow = pursuit_.follow;
     const double units = affordable();
@@ -177,7 +173,7 @@ class Narrowing {
                                                            : probed(kTicksToSurvey * each) / each;
     if (!work_.pace.go_on() || ticks < kTicksToSurvey) return;
     lags_ = work_.followed = true;
-    survey(work_, kMostSurveyed);
+    static_cast<void>(survey(work_, kMostSurveyed));
   }
 
   /// Work units that a search takes, of a few that lie apart; infinite where they take

@@ -35,11 +35,20 @@ class Survey {
     rounds_ = rounds < kMostRounds ? rounds : kMostRounds;
   }
 
-  void run() noexcept {
-    for (std::uint32_t i = 0; i < work_.count; ++i) round_of_[i] = round_of(work_.active()[i]);
-    const double done = work_.swept ? begin() : go_on();
-    work_.memory.pursuit.surveyed = done / rounds_;
+  bool run() noexcept {
+    for (std::uint32_t i = 0; i < work_.count; ++i) {
+      const Active& item = work_.active()[i];
+      round_of_[i] = round_of(item);
+      if (work_.is_felt(item) && work_.is_present(item)) {
+        expected_ += tail_contacts(1, work_.is_crossing(item) ? 1 : 0);
+      }
+    }
+    const std::uint32_t before = work_.swept ? 0 : rounds_seen();
+    const std::uint32_t seen = work_.swept ? begin() : go_on(before);
+    if (seen == before) return false;
+    work_.memory.pursuit.surveyed = static_cast<double>(seen) / rounds_;
     work_.widen_all();
+    return true;
   }
 
  private:
@@ -64,10 +73,15 @@ class Survey {
     return i < telling ? i : i < repeated ? telling : i - repeated + telling;
   }
 
-  std::uint32_t go_on() noexcept {
+  /// Of as many rounds as there are now, by the surveys before.
+  std::uint32_t rounds_seen() const noexcept {
     const double done = work_.memory.pursuit.surveyed * rounds_;
     std::uint32_t round = 0;
     while (round + 0.5 < done) ++round;
+    return round;
+  }
+
+  std::uint32_t go_on(std::uint32_t round) noexcept {
     while (round < rounds_ && has_units_for(round)) see(round++);
     return round;
   }
@@ -127,7 +141,7 @@ class Survey {
     // Every look as a seed would cost a fifth of the survey.
     if (spread_) note_seed(*work_.frame_of(item).a, pair, state.seeds);
     // Contacts take time, too: no more are sought than can be told.
-    if (!was_felt && work_.is_felt(item)) work_.meter.expect_contacts(++felt_);
+    if (!was_felt && work_.is_felt(item)) work_.meter.expect_contacts(++expected_);
   }
 
   Work& work_;
@@ -137,14 +151,14 @@ class Survey {
   std::uint32_t looks_ = 0;   // spread over a region
   std::uint32_t beside_ = 0;  // beside the nearest of them
   std::uint32_t rounds_ = 0;
-  bool spread_ = true;  // which kind is measured
-  std::uint64_t felt_ = 0;
+  bool spread_ = true;          // which kind is measured
+  std::uint64_t expected_ = 0;  // contacts, as tail_contacts() counts them
 };
 
 }  // namespace
 
-void survey(Work& work, double share) noexcept {
-  if (work.count > 0) Survey(work, share).run();
+bool survey(Work& work, double share) noexcept {
+  return work.count > 0 && Survey(work, share).run();
 }
 
 }  // namespace palpate::regions

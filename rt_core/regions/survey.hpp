@@ -19,7 +19,8 @@ namespace palpate::regions {
 /// Proves nothing; witnesses are at the present poses as before. Where an image cannot be looked up
 /// in, nothing. Takes the queue of the query's memory as scratch.
 /// @param share  of the tick's units and time, within what the budget leaves
+/// @return false where no round was begun
 /// Cost: the share, plus three passes over all active regions a round, of at most 148.
-void survey(Work& work, double share) noexcept;
+bool survey(Work& work, double share) noexcept;
 
 }  // namespace palpate::regions
