@@ -11,9 +11,9 @@
 // of those how far past it they were over, in microseconds: median, 99.9 %, 99.999 % and largest;
 // then the largest of those alone in which the thread was not interrupted, as far as its own clock
 // tells; the mean time of a work unit; ticks that had no contact where the engine's exact query has
-// one, and those among them whose force is more than a twentieth of the largest; and the root mean
-// square error of the force over the largest (nrmse), both against the exact query. Wants a core of
-// its own: `chrt -f 50 taskset -c 1 bench_overrun ...`.
+// one, those among them whose force is more than a twentieth of the largest, and how many follow
+// each other at most; and the root mean square error of the force over the largest (nrmse), all
+// against the exact query. Wants a core of its own: `chrt -f 50 taskset -c 1 bench_overrun ...`.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -89,8 +89,9 @@ struct Row {
   double undisturbed_us = 0;
   double busy_us = 0, units = 0;
   std::uint64_t lost = 0;
-  std::uint64_t lost_felt = 0;  ///< of these, with a force of more than kFelt of the peak
-  double square_error = 0;      ///< of the force over the peak, summed
+  std::uint64_t lost_felt = 0;    ///< of these, with a force of more than kFelt of the peak
+  std::uint64_t lost_in_row = 0;  ///< most that follow each other
+  double square_error = 0;        ///< of the force over the peak, summed
 };
 
 /// Of a tick: `50` on the command line is microseconds, `50u` units.
@@ -115,6 +116,7 @@ Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, All
   bench.forget();
   const double peak = peak_of(places);
   Walk walk;
+  std::uint64_t in_row = 0;
   for (std::uint64_t i = 0; i < ticks; ++i) {
     const Place& place = places[walk.next()];
     const std::uint64_t processor_start = cli::processor_ns();
@@ -126,10 +128,11 @@ Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, All
     row.busy_us += us_since(start, end);
     row.units += static_cast<double>(r.queries);
     row.square_error += squared_norm((1 / peak) * (r.wrench.force_N - place.force_N));
-    if (place.touches && r.contacts.empty()) {
-      ++row.lost;
-      if (norm(place.force_N) > kFelt * peak) ++row.lost_felt;
-    }
+    const bool lost = place.touches && r.contacts.empty();
+    in_row = lost ? in_row + 1 : 0;
+    row.lost_in_row = std::max(row.lost_in_row, in_row);
+    row.lost += lost ? 1u : 0u;
+    row.lost_felt += lost && norm(place.force_N) > kFelt * peak ? 1u : 0u;
     if (!r.certificate.truncated_by_time) continue;
     const double over = us_since(budget.deadline_ns, end);
     row.over_us.push_back(static_cast<float>(over));
@@ -155,17 +158,18 @@ int measure(std::string_view engine, std::uint64_t ticks, int count, char** budg
   Bench bench(a, b, settings);
   std::puts(
       "engine,budget,ticks,ended_by_deadline,over_p50_us,over_p99.9_us,over_p99.999_us,"
-      "over_max_us,over_max_undisturbed_us,unit_us,lost,lost_felt,nrmse");
+      "over_max_us,over_max_undisturbed_us,unit_us,lost,lost_felt,lost_in_row,nrmse");
   for (int i = 0; i < count; ++i) {
     Row row = run(bench, places, ticks, Allowed(budgets[i]));
     std::sort(row.over_us.begin(), row.over_us.end());
-    std::printf("%.*s,%s,%llu,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%.3f,%llu,%llu,%.4f\n",
+    std::printf("%.*s,%s,%llu,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%.3f,%llu,%llu,%llu,%.4f\n",
                 static_cast<int>(engine.size()), engine.data(), budgets[i],
                 static_cast<unsigned long long>(ticks), row.over_us.size(),
                 at_share(row.over_us, 0.5), at_share(row.over_us, 0.999),
                 at_share(row.over_us, 0.99999), at_share(row.over_us, 1), row.undisturbed_us,
                 row.busy_us / std::max(row.units, 1.0), static_cast<unsigned long long>(row.lost),
                 static_cast<unsigned long long>(row.lost_felt),
+                static_cast<unsigned long long>(row.lost_in_row),
                 std::sqrt(row.square_error / static_cast<double>(ticks)));
     std::fflush(stdout);
   }
