@@ -35,6 +35,7 @@ constexpr double kUnitsToFollow = 16;
 constexpr double kTicksToSurvey = 2.5;
 constexpr std::uint32_t kProbes = 3;
 constexpr double kMostSurveyed = 0.97;
+constexpr double kFeltOfKnown = 0.25;
 constexpr double kFewestToSurvey = 64;
 constexpr double kMostProbed = 1e6;  ///< units a region; no search takes as many
 /// Then following takes this share of what is left, the larger where it brings witnesses nearer
@@ -233,11 +234,25 @@ class Narrowing {
     return units;
   }
 
-  /// Searches of all wide intervals that are felt take many times what the tick has left.
+  /// Searches of all wide intervals that are felt take many times what the tick has left. As long
+  /// as they have not told what they take: as in the tick before, which may be one of a survey,
+  /// where many regions are felt.
   bool lags() noexcept {
     if (work_.swept) return lags_after_jump();
-    lags_ = pursuit_.searches >= kFewSearches && units_to_search() > kManyTicks * affordable();
+    lags_ = pursuit_.searches < kFewSearches ? pursuit_.lagged && many_are_felt()
+                                             : units_to_search() > kManyTicks * affordable();
     return lags_;
+  }
+
+  /// Of those with a witness. Else a few decide the force, and searches find them.
+  bool many_are_felt() noexcept {
+    std::uint32_t known = 0;
+    std::uint32_t felt = 0;
+    for (const Active& item : work_.active()) {
+      known += work_.witness_of(item).known() ? 1u : 0u;
+      felt += work_.is_felt(item) ? 1u : 0u;
+    }
+    return felt > kFeltOfKnown * known;
   }
 
   bool lags_after_jump() noexcept {
