@@ -35,7 +35,6 @@ constexpr double kUnitsToFollow = 16;
 constexpr double kTicksToSurvey = 2.5;
 constexpr std::uint32_t kProbes = 3;
 constexpr double kMostSurveyed = 0.97;
-constexpr double kFeltOfKnown = 0.25;
 constexpr double kFewestToSurvey = 64;
 constexpr double kMostProbed = 1e6;  ///< units a region; no search takes as many
 /// Then following takes this share of what is left, the larger where it brings witnesses nearer
@@ -234,9 +233,9 @@ class Narrowing {
     return units;
   }
 
-  /// Searches of all wide intervals that are felt take many times what the tick has left. As long
-  /// as they have not told what they take: as in the tick before, which may be one of a survey,
-  /// where many regions are felt.
+  /// Searches of all wide intervals that are felt take many times what the tick has left. Before
+  /// any have told what they take, what a survey has found in the ticks before is all there is to
+  /// go by: it goes on, and following comes after it, where many regions are felt.
   bool lags() noexcept {
     if (work_.swept) return lags_after_jump();
     lags_ = pursuit_.searches < kFewSearches ? pursuit_.lagged && many_are_felt()
@@ -244,7 +243,7 @@ class Narrowing {
     return lags_;
   }
 
-  /// Of those with a witness. Else a few decide the force, and searches find them.
+  /// A quarter of those with a witness. Else a few decide the force, and searches find them.
   bool many_are_felt() noexcept {
     std::uint32_t known = 0;
     std::uint32_t felt = 0;
@@ -252,7 +251,7 @@ class Narrowing {
       known += work_.witness_of(item).known() ? 1u : 0u;
       felt += work_.is_felt(item) ? 1u : 0u;
     }
-    return felt > kFeltOfKnown * known;
+    return 4 * felt > known;
   }
 
   bool lags_after_jump() noexcept {

@@ -194,12 +194,13 @@ TEST(RegionsFollow, ticks_after_a_jump_feel_some_of_everywhere) {
   }
 }
 
+/// What an engine makes of its first ticks at a place.
 struct Soon {
   double known = 0;  // share of the contacts
-  double error = 0;  // of the force, over its peak, in the second half of the first few ticks
+  double error = 0;  // of the force, over its peak, in the second half of them
 };
 
-Soon soon_after_jump_of(BakedScene& cut) {
+Soon first_ticks_of(BakedScene& cut) {
   constexpr int kSoon = 8;
   BakedScene exact = scene();
   double peak_N = 0;
@@ -225,7 +226,7 @@ TEST(RegionsFollow, soon_after_a_jump_what_is_near_is_known) {
   tick_at(cut, 0);  // tells what searches take
   const Pose away[2] = {{{100 * delta_m(), 0, 0}, {}}, {}};
   tick_or_fail(*cut.engine, away);
-  const Soon soon = soon_after_jump_of(cut);
+  const Soon soon = first_ticks_of(cut);
   EXPECT_GT(soon.known, 0.97);
   EXPECT_LT(soon.error, 0.12);  // followed at once: .18, and .91 known
 }
@@ -233,7 +234,7 @@ TEST(RegionsFollow, soon_after_a_jump_what_is_near_is_known) {
 /// Also where no search has told yet what searches take.
 TEST(RegionsFollow, soon_after_the_start_what_is_near_is_known) {
   BakedScene cut = scene();
-  const Soon soon = soon_after_jump_of(cut);
+  const Soon soon = first_ticks_of(cut);
   EXPECT_GT(soon.known, 0.97);
   EXPECT_LT(soon.error, 0.12);
 }
