@@ -11,9 +11,10 @@
 // of those how far past it they were over, in microseconds: median, 99.9 %, 99.999 % and largest;
 // then the largest of those alone in which the thread was not interrupted, as far as its own clock
 // tells; the mean time of a work unit; ticks that had no contact where the engine's exact query has
-// one, those among them whose force is more than a twentieth of the largest, and how many follow
-// each other at most; and the root mean square error of the force over the largest (nrmse), all
-// against the exact query. Wants a core of its own: `chrt -f 50 taskset -c 1 bench_overrun ...`.
+// one (lost), those among them whose force is more than a twentieth of the largest, how many follow
+// each other at most, and those whose certificate rules out the contact that is there (denied; must
+// be 0); and the root mean square error of the force over the largest (nrmse), all against the
+// exact query. Wants a core of its own: `chrt -f 50 taskset -c 1 bench_overrun ...`.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -34,6 +35,7 @@ constexpr int kPlaces = 2000;
 constexpr std::uint64_t kPass = 1000;  // ticks between leaps
 constexpr double kQuiet_us = 2;        // what reading two clocks leaves between them
 constexpr double kFelt = 0.05;         // of the largest force
+constexpr double kRounding = 1e-6;     // of delta
 
 double us_since(std::uint64_t start_ns, std::uint64_t now_ns) {
   return 1e-3 * (static_cast<double>(now_ns) - static_cast<double>(start_ns));
@@ -63,6 +65,7 @@ class Walk {
 struct Place {
   Pose pose;
   bool touches = false;  ///< something is nearer than delta
+  double distance_m = 0;
   Vec3d force_N;
 };
 
@@ -73,7 +76,7 @@ std::vector<Place> places_of(const Body& a, const Body& b, Settings settings) {
   std::vector<Place> places;
   for (const Pose& pose : motion(kJaws, a, b, settings.delta_m, kPlaces)) {
     const TickResult r = exact.tick_at(pose);
-    places.push_back({pose, !r.contacts.empty(), r.wrench.force_N});
+    places.push_back({pose, !r.contacts.empty(), r.min_distance_m, r.wrench.force_N});
   }
   return places;
 }
@@ -91,6 +94,7 @@ struct Row {
   std::uint64_t lost = 0;
   std::uint64_t lost_felt = 0;    ///< of these, with a force of more than kFelt of the peak
   std::uint64_t lost_in_row = 0;  ///< most that follow each other
+  std::uint64_t denied = 0;       ///< of the lost, by their certificates
   double square_error = 0;        ///< of the force over the peak, summed
 };
 
@@ -115,6 +119,7 @@ Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, All
   row.over_us.reserve(ticks);
   bench.forget();
   const double peak = peak_of(places);
+  const double delta_m = bench.settings().delta_m;
   Walk walk;
   std::uint64_t in_row = 0;
   for (std::uint64_t i = 0; i < ticks; ++i) {
@@ -133,6 +138,8 @@ Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, All
     row.lost_in_row = std::max(row.lost_in_row, in_row);
     row.lost += lost ? 1u : 0u;
     row.lost_felt += lost && norm(place.force_N) > kFelt * peak ? 1u : 0u;
+    const double least_m = delta_m - r.certificate.error_bound_m;
+    row.denied += lost && place.distance_m < least_m - kRounding * delta_m ? 1u : 0u;
     if (!r.certificate.truncated_by_time) continue;
     const double over = us_since(budget.deadline_ns, end);
     row.over_us.push_back(static_cast<float>(over));
@@ -158,11 +165,11 @@ int measure(std::string_view engine, std::uint64_t ticks, int count, char** budg
   Bench bench(a, b, settings);
   std::puts(
       "engine,budget,ticks,ended_by_deadline,over_p50_us,over_p99.9_us,over_p99.999_us,"
-      "over_max_us,over_max_undisturbed_us,unit_us,lost,lost_felt,lost_in_row,nrmse");
+      "over_max_us,over_max_undisturbed_us,unit_us,lost,lost_felt,lost_in_row,denied,nrmse");
   for (int i = 0; i < count; ++i) {
     Row row = run(bench, places, ticks, Allowed(budgets[i]));
     std::sort(row.over_us.begin(), row.over_us.end());
-    std::printf("%.*s,%s,%llu,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%.3f,%llu,%llu,%llu,%.4f\n",
+    std::printf("%.*s,%s,%llu,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%.3f,%llu,%llu,%llu,%llu,%.4f\n",
                 static_cast<int>(engine.size()), engine.data(), budgets[i],
                 static_cast<unsigned long long>(ticks), row.over_us.size(),
                 at_share(row.over_us, 0.5), at_share(row.over_us, 0.999),
@@ -170,6 +177,7 @@ int measure(std::string_view engine, std::uint64_t ticks, int count, char** budg
                 row.busy_us / std::max(row.units, 1.0), static_cast<unsigned long long>(row.lost),
                 static_cast<unsigned long long>(row.lost_felt),
                 static_cast<unsigned long long>(row.lost_in_row),
+                static_cast<unsigned long long>(row.denied),
                 std::sqrt(row.square_error / static_cast<double>(ticks)));
     std::fflush(stdout);
   }
