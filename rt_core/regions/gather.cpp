@@ -14,18 +14,24 @@ using levels::PairState;
 /// A move by more than this (in units), or by this many delta where that is more, starts anew.
 constexpr double kJump = 0.05;
 constexpr double kJumpDelta = 2;
-/// Under a budget a sweep may take this share of a tick, or so many units where that is more. It
-/// tells what is far: of surfaces that are near all over, little, and that costs most.
+/// Under a budget a sweep may take the most of this share of a tick, so many units, and as many for
+/// a region but no more than half of the tick. It tells what is far, many regions at a time; of
+/// surfaces that are near all over, little, and that costs most.
 constexpr double kMostSwept = 0.04;
 constexpr double kLeastSwept = 128;
+constexpr double kSweptPerRegion = 0.25;
 
 /// Rounded towards minus infinity far enough for float.
 float float_below(double v) noexcept { return static_cast<float>(v - 1e-7 * (v < 0 ? -v : v)); }
 
-void limit_sweep(Work& work) noexcept {
-  const double share = kMostSwept * work.units_of_tick();
-  if (share == std::numeric_limits<double>::infinity()) return;
-  work.pace.limit(static_cast<std::uint64_t>(share > kLeastSwept ? share : kLeastSwept));
+void limit_sweep(Work& work, std::size_t regions) noexcept {
+  const double units = work.units_of_tick();
+  if (units == std::numeric_limits<double>::infinity()) return;
+  const double for_all = kSweptPerRegion * static_cast<double>(regions);
+  double most = for_all < 0.5 * units ? for_all : 0.5 * units;
+  most = most > kLeastSwept ? most : kLeastSwept;
+  most = most > kMostSwept * units ? most : kMostSwept * units;
+  work.pace.limit(static_cast<std::uint64_t>(most));
 }
 
 /// @return whether all regions of the pair have been proved anew
@@ -39,7 +45,7 @@ bool sweep_if_lost(Work& work, std::uint32_t index) noexcept {
   memory.containment[index].doubtful = true;
   memory.pursuit.surveyed = 1;  // what a survey had left of another place is none of this one
   const std::span<float> swept = memory.swept.first(pair.image_a->regions.size());
-  limit_sweep(work);
+  limit_sweep(work, swept.size());
   sweep(*memory.kernels, memory.frames[index], *memory.search, work.pace,
         static_cast<float>(pair.delta + margin_of(pair)), swept);
   work.pace.no_limit();

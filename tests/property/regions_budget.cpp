@@ -121,6 +121,36 @@ TEST(RegionsBudget, after_a_jump_what_is_deepest_is_known_first) {
   EXPECT_LT(std::sqrt(squares) / peak, 0.08);
 }
 
+/// Of some two thousand regions twenty are near: a budget that does for searching those and for
+/// ruling out the others has all contacts.
+TEST(RegionsBudget, few_near_regions_of_many_are_found_after_a_jump) {
+  bake::BakeOptions options = options_for(bake::ForEngine::regions);
+  options.delta_rel = 0.01;
+  const BakedBody ball(bake::make_model("golf_ball", 20'000), options);
+  const double radius_m = ball.view.header->radius_m;
+  const Settings settings{.engine = EngineKind::regions,
+                          .delta_m = options.delta_rel * radius_m,
+                          .cluster_radius_m = options.delta_rel * radius_m};
+  constexpr std::uint64_t kUnits = 3000;
+  double most = 0;
+  int felt = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Pose poses[2] = {{{2 * radius_m, 0, 0}, turn({0.4 * i, 0.7 * i, 0.1 * i})}, {}};
+    BakedScene exact({ball.view, ball.view}, {{0, 1}}, settings);
+    BakedScene budgeted({ball.view, ball.view}, {{0, 1}}, settings);
+    const TickResult truth = tick_or_fail(*exact.engine, poses);
+    const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = kUnits});
+    most = std::max(most, static_cast<double>(truth.queries));
+    felt += truth.contacts.empty() ? 0 : 1;
+    EXPECT_EQ(found.contacts.size(), truth.contacts.size());
+    EXPECT_LE(norm(found.wrench.force_N - truth.wrench.force_N), 1e-3 * norm(truth.wrench.force_N));
+  }
+  RecordProperty("regions", static_cast<int>(ball.view.regions.size()));
+  RecordProperty("units", std::to_string(most));
+  EXPECT_GT(felt, 10);
+  EXPECT_LT(most, kUnits);
+}
+
 TEST(RegionsBudget, every_budget_gives_a_true_certificate) {
   std::vector<double> forces;
   BakedScene exact = scene_with(kSettings);
