@@ -14,9 +14,9 @@ using levels::PairState;
 /// A move by more than this (in units), or by this many delta where that is more, starts anew.
 constexpr double kJump = 0.05;
 constexpr double kJumpDelta = 2;
-/// Under a budget a sweep may take the most of this share of a tick, so many units, and as many for
-/// a region but no more than half of the tick. It tells what is far, many regions at a time; of
-/// surfaces that are near all over, little, and that costs most.
+/// Under a budget a sweep may take whichever is most: this share of a tick, so many units, or so
+/// many for each region, the last no more than half of the tick. It tells what is far, many regions
+/// at a time; of surfaces that are near all over, little, and that costs most.
 constexpr double kMostSwept = 0.04;
 constexpr double kLeastSwept = 128;
 constexpr double kSweptPerRegion = 0.25;
