@@ -66,6 +66,7 @@ struct Layout {
   std::span<float> swept, absence;
   std::span<regions::SearchScratch> search;
   std::span<regions::CrossingScratch> crossing;
+  std::span<regions::Unfinished> unfinished;
 };
 
 std::size_t regions_of(const Scene& scene, const BodyPair& pair) noexcept {
@@ -103,6 +104,7 @@ void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
   out.absence = arena.array<float>(all);
   out.search = arena.array<regions::SearchScratch>(1);
   out.crossing = arena.array<regions::CrossingScratch>(1);
+  out.unfinished = arena.array<regions::Unfinished>(1);
 }
 
 Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKind kind) noexcept {
@@ -164,6 +166,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.regions.crowd.absence = layout.absence;
   e.regions.search = layout.search.data();
   e.regions.crossing = layout.crossing.data();
+  e.regions.unfinished = layout.unfinished.data();
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
     attach(layout.states[i], scene, scene.pairs[i]);
   }
@@ -190,6 +193,7 @@ void begin_levels(levels::QueryMemory& memory) noexcept {
 }
 
 void begin_regions(const Scene& scene, regions::QueryMemory& memory) noexcept {
+  memory.unfinished->drop();
   std::uint32_t first = 0;
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
     memory.first_state[i] = first;

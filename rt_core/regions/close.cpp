@@ -31,6 +31,38 @@ float margin_within(const Work& work, const Active& item, float tolerance) noexc
   return margin - room;
 }
 
+/// Searches a region from where a tick before had to leave off, or from the start. What the budget
+/// leaves of it is kept, unless another search is.
+Bounds search_on(Work& work, const Active& item, const Reach& reach) noexcept {
+  QueryMemory& memory = work.memory;
+  Unfinished& kept = *memory.unfinished;
+  const bool begun = kept.state == item.state;
+  const PairState& pair = work.pair_of(item);
+  RegionState& state = work.state_of(item);
+  const double before = begun ? kept.spent : 0;
+  const std::uint64_t used = work.pace.used();
+  const Bounds found =
+      begun ? go_on_searching(*memory.kernels, work.frame_of(item), *memory.search, work.pace,
+                              state.witness, reach, moved_since(kept.at, pair, item.region),
+                              kept.left)
+            : search(*memory.kernels, work.frame_of(item), *memory.search, work.pace, item.region,
+                     state.witness, reach, kept.any() ? nullptr : &kept.left);
+  const double spent = before + static_cast<double>(work.pace.used() - used);
+  const bool has_first = reach.first && found.best.known();
+  if (found.complete) {
+    if (begun) kept.drop();
+    if (reach.first) return found;
+    memory.pursuit.learn_search(spent);
+    state.cost = static_cast<float>(spent);
+    ++work.searches;
+  } else if (begun || (!has_first && !kept.any())) {
+    kept.state = item.state;
+    kept.at = stand_of(pair, item.region);
+    kept.spent = spent;
+  }
+  return found;
+}
+
 /// @param first  ends as soon as a pair nearer than delta is known
 void search_region(Work& work, Active& item, float tolerance, bool first) noexcept {
   if (item.width <= kClosed && item.width <= tolerance) return;
@@ -46,14 +78,8 @@ void search_region(Work& work, Active& item, float tolerance, bool first) noexce
   const std::uint64_t before = work.pace.used();
   const bool known = state.witness.known();
   const float upper = work.upper_of(item);
-  const Bounds found = search(*memory.kernels, work.frame_of(item), *memory.search, work.pace,
-                              item.region, state.witness, reach);
+  const Bounds found = search_on(work, item, reach);
   const auto spent = static_cast<double>(work.pace.used() - before);
-  if (!first && found.complete) {
-    memory.pursuit.learn_search(spent);
-    state.cost = static_cast<float>(spent);
-    ++work.searches;
-  }
   state.witness = found.best;
   if (known) {
     const auto nearer = static_cast<double>(upper - work.upper_of(item));
@@ -77,24 +103,41 @@ void climb_from_witness(Work& work, Active& item) noexcept {
   work.widen(item);
 }
 
+bool may_climb(const Work& work, const Active& item) noexcept {
+  return !item.climbed && work.witness_of(item).nearer_than(kClimbReach * work.delta_of(item));
+}
+
+/// How wide a step leaves an interval.
+float next_width(const Work& work, const Active& item, float tolerance) noexcept {
+  const bool last = item.width <= kLastStep * work.delta_of(item);
+  const float next = last ? 0 : kStep * item.width;
+  return next > tolerance ? next : tolerance;
+}
+
+/// After which it has a witness, or an interval of this width.
+void seek(Work& work, Active& item, float width) noexcept {
+  const bool first = !work.witness_of(item).known();
+  search_region(work, item, width, first);
+  if (first && work.witness_of(item).known() && !work.truncated) climb_from_witness(work, item);
+}
+
 }  // namespace
 
 void close(Work& work, Active& item, float tolerance) noexcept {
   search_region(work, item, tolerance, false);
 }
 
+void take_up(Work& work, Active& item, float tolerance) noexcept {
+  if (may_climb(work, item)) climb_from_witness(work, item);
+  seek(work, item, next_width(work, item, tolerance));
+}
+
 void step(Work& work, Active& item, float tolerance, bool at_once) noexcept {
-  const Witness& witness = work.witness_of(item);
-  const float delta = work.delta_of(item);
-  if (witness.known() && !item.climbed && witness.distance < kClimbReach * delta) {
+  if (may_climb(work, item)) {
     climb_from_witness(work, item);
     return;
   }
-  const bool first = !witness.known();
-  const bool by_and_by = !at_once && item.width > kLastStep * delta;
-  const float next = by_and_by ? kStep * item.width : 0;
-  search_region(work, item, next > tolerance ? next : tolerance, first);
-  if (first && witness.known() && !work.truncated) climb_from_witness(work, item);
+  seek(work, item, at_once ? tolerance : next_width(work, item, tolerance));
 }
 
 }  // namespace palpate::regions

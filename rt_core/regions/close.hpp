@@ -10,6 +10,10 @@ namespace palpate::regions {
 /// then work.truncated. Cost: search().
 void close(Work& work, Active& item, float tolerance) noexcept;
 
+/// The same of a region whose search was left unfinished (unfinished.hpp), from there on and as far
+/// as one step goes, after a climb.
+void take_up(Work& work, Active& item, float tolerance) noexcept;
+
 /// One step towards that under a budget that may end any moment, the cheap ones first: a witness is
 /// sought, then moved to the nearest of its neighbours, then the region is searched, by and by.
 /// @param at_once  not by and by

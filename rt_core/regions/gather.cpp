@@ -21,6 +21,10 @@ constexpr double kMostSwept = 0.04;
 constexpr double kLeastSwept = 128;
 constexpr double kSweptPerRegion = 0.25;
 
+/// Under a budget, at most this share of it goes to pairs that were kept: where there are many,
+/// none would be left to search with, and so it would stay.
+constexpr double kMostMeasured = 0.5;
+
 /// Rounded towards minus infinity far enough for float.
 float float_below(double v) noexcept { return static_cast<float>(v - 1e-7 * (v < 0 ? -v : v)); }
 
@@ -69,7 +73,7 @@ void gather_regions(Work& work, std::uint32_t index, bool swept) noexcept {
   for (std::uint32_t i = 0; i < regions.size(); ++i) {
     const RegionState& state = memory.states[first + i];
     if (static_cast<double>(state.lower) - way_since(state, pair) >= far) continue;
-    const double moved_by = swept ? kMotionSlack : moved_since(state, pair, i);
+    const double moved_by = swept ? kMotionSlack : moved_since(state.at, pair, i);
     const double lower = static_cast<double>(state.lower) - moved_by;
     if (lower >= pair.delta) {
       if (lower < far) work.result.open_m += (far - lower) * pair.unit_m;
@@ -110,6 +114,7 @@ void measure_witnesses(Work& work) noexcept {
 void measure_near_pairs(Work& work) noexcept {
   PairBatch batch(work,
                   [&work](std::uint32_t i, const Witness& pair) { take_if_nearer(work, i, pair); });
+  work.limit_to(kMostMeasured);
   for (std::uint32_t i = 0; i < work.count; ++i) {
     Active& item = work.active()[i];
     const RegionState& state = work.state_of(item);
@@ -126,6 +131,7 @@ void measure_near_pairs(Work& work) noexcept {
     }
   }
   batch.measure_all();
+  work.pace.no_limit();
 }
 
 }  // namespace

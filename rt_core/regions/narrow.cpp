@@ -7,6 +7,7 @@
 #include "rt_core/regions/close.hpp"
 #include "rt_core/regions/follow.hpp"
 #include "rt_core/regions/look.hpp"
+#include "rt_core/regions/motion.hpp"
 #include "rt_core/regions/survey.hpp"
 
 namespace palpate::regions {
@@ -45,6 +46,12 @@ constexpr double kFollowWorth = 2;
 /// In a tick, all regions together, in contact tolerances: less is what witnesses waver by.
 constexpr double kLeastGain = 0.006;
 
+/// A search goes on from the tick before for this share of what is left, the rest being for what is
+/// new: and where what is left of it can make the interval narrower by this share at least, after
+/// all motion since.
+constexpr double kMostTakenUp = 0.5;
+constexpr float kWorthTakingUp = 0.5f;
+
 /// Of equally urgent ones, as after a jump, neighbours are far apart in the order, so that a budget
 /// which ends early has seen something of everywhere.
 struct MoreUrgent {
@@ -64,6 +71,7 @@ class Narrowing {
   void run() noexcept {
     share_tolerance();
     if (work_.swept && work_.demand.limited && work_.count > 0) survey_where_far_to_go();
+    begun_ = worth_taking_up();
     narrow_widest(work_.demand.limited && !lags_);
     if (lags_ && !work_.followed) {
       work_.followed = true;
@@ -104,12 +112,29 @@ class Narrowing {
     return share < half ? share : half;
   }
 
+  /// The region whose search the tick before has begun, kNone where there is none. It is dropped
+  /// where too little of it holds any more, as when the bodies move fast.
+  std::uint32_t worth_taking_up() noexcept {
+    Unfinished& kept = *work_.memory.unfinished;
+    for (std::uint32_t i = 0; kept.any() && i < work_.count; ++i) {
+      const Active& item = work_.active()[i];
+      if (item.state != kept.state) continue;
+      const levels::PairState& pair = work_.pair_of(item);
+      const auto moved = static_cast<float>(moved_since(kept.at, pair, item.region));
+      const float within = kept.left.seen - moved - item.rest;
+      if (margin_of(pair) > 0 && within > kWorthTakingUp * item.width) return i;
+    }
+    kept.drop();
+    return image::kNone;
+  }
+
   /// Until the open intervals are within the tolerance or the budget ends.
   /// @param may_lag  or until it shows that searches do not keep up
   void narrow_widest(bool may_lag) noexcept {
     MinQueue<std::uint32_t, MoreUrgent> queue(work_.memory.queue, MoreUrgent{work_.active()});
     double open_m = 0;
     felt_ = crossing_ = 0;
+    if (begun_ != image::kNone) work_.active()[begun_].urgency = kFarthest;
     for (std::uint32_t i = 0; i < work_.count; ++i) {
       open_m += work_.width_m(work_.active()[i]);
       count_in(work_.active()[i]);
@@ -127,7 +152,7 @@ class Narrowing {
       open_m -= work_.width_m(item);
       const std::uint64_t known = felt_ + crossing_;
       count_out(item);
-      narrow_one(item, at_once);
+      narrow_one(index, at_once);
       count_in(item);
       if (felt_ + crossing_ > known) leave_for_report();
       open_m += work_.width_m(item);
@@ -136,8 +161,15 @@ class Narrowing {
     }
   }
 
-  void narrow_one(Active& item, bool at_once) noexcept {
-    if (work_.demand.limited) {
+  void narrow_one(std::uint32_t index, bool at_once) noexcept {
+    Active& item = work_.active()[index];
+    if (index == begun_) {
+      begun_ = image::kNone;
+      work_.limit_to(kMostTakenUp);
+      take_up(work_, item, share_of(item));
+      work_.pace.no_limit();
+      work_.truncated = !work_.pace.go_on();
+    } else if (work_.demand.limited) {
       step(work_, item, share_of(item), at_once);
     } else {
       close(work_, item, share_of(item));
@@ -275,15 +307,17 @@ class Narrowing {
 
   Work& work_;
   Pursuit& pursuit_;
-  bool lags_ = false;           // searches do not keep up
-  bool asked_ = false;          // after a jump: whether they will
-  std::uint64_t felt_ = 0;      // of active regions
-  std::uint64_t crossing_ = 0;  // likewise
+  bool lags_ = false;                   // searches do not keep up
+  bool asked_ = false;                  // after a jump: whether they will
+  std::uint32_t begun_ = image::kNone;  // of active regions: the one that is to be taken up
+  std::uint64_t felt_ = 0;              // of active regions
+  std::uint64_t crossing_ = 0;          // likewise
 };
 
 }  // namespace
 
 void narrow(Work& work) noexcept {
+  if (!work.demand.limited || work.swept) work.memory.unfinished->drop();
   work.pace.grant(kLeastUnits);
   if (work.demand.limited || work.demand.tolerance_m > 0) {
     Narrowing(work).run();

@@ -21,12 +21,14 @@ Vec3d centre_of(const levels::PairState& pair, std::uint32_t region) noexcept {
 
 }  // namespace
 
-double moved_since(const RegionState& state, const levels::PairState& pair,
-                   std::uint32_t region) noexcept {
+Stand stand_of(const levels::PairState& pair, std::uint32_t region) noexcept {
+  return {centre_of(pair, region), pair.travel, pair.turn};
+}
+
+double moved_since(const Stand& at, const levels::PairState& pair, std::uint32_t region) noexcept {
   const double radius =
       kRadiusSlack * pair.scale_a * static_cast<double>(pair.image_a->regions[region].radius);
-  return norm(centre_of(pair, region) - state.centre) + (pair.turn - state.turn_at) * radius +
-         kMotionSlack;
+  return norm(centre_of(pair, region) - at.centre) + (pair.turn - at.turn) * radius + kMotionSlack;
 }
 
 void prove(RegionState& state, const levels::PairState& pair, std::uint32_t region,
@@ -34,9 +36,7 @@ void prove(RegionState& state, const levels::PairState& pair, std::uint32_t regi
   const float nearest = state.near.count > 0 ? state.near.pairs[0].distance - kRounding : rest;
   state.rest = rest;
   state.lower = nearest < rest ? nearest : rest;
-  state.centre = centre_of(pair, region);
-  state.travel_at = pair.travel;
-  state.turn_at = pair.turn;
+  state.at = stand_of(pair, region);
 }
 
 }  // namespace palpate::regions

@@ -21,6 +21,7 @@
 #include "rt_core/regions/region_state.hpp"
 #include "rt_core/regions/search.hpp"
 #include "rt_core/regions/sweep.hpp"
+#include "rt_core/regions/unfinished.hpp"
 #include "rt_core/regions/ways_out.hpp"
 
 namespace palpate::regions {
@@ -68,8 +69,9 @@ struct QueryMemory {
   std::span<Contact> contacts;           ///< [limits.contacts]
   SearchScratch* search = nullptr;
   CrossingScratch* crossing = nullptr;
-  Pursuit pursuit;  ///< from tick to tick
-  Crowd crowd;      ///< likewise
+  Unfinished* unfinished = nullptr;  ///< from tick to tick
+  Pursuit pursuit;                   ///< likewise
+  Crowd crowd;                       ///< likewise
 };
 
 /// What a query found.
@@ -105,7 +107,8 @@ struct Demand {
 /// measured at the present poses and bound the distances from above. That is exact for as long as
 /// no other pair can have come as near; then the region is searched again (search.hpp), under a
 /// budget the widest interval first and closed in steps, after a cheap look at the witness's
-/// neighbours. A tolerance is shared so that what costs more to search may stay open wider. A
+/// neighbours. One search that the budget ends goes on in the next tick, before all others
+/// (unfinished.hpp). A tolerance is shared so that what costs more to search may stay open wider. A
 /// budget that is far too small for the searches goes to following the witnesses instead where that
 /// brings them nearer (follow.hpp). After a jump the deepest contacts go first, and a survey comes
 /// before the searches where the budget is small for them (survey.hpp). Whatever ends it, every

@@ -15,6 +15,17 @@ using image::RegionTriangle;
 
 constexpr float kFar = std::numeric_limits<float>::max();
 
+/// A distance after a motion, at least; of eight roundings at most.
+float lessened(float distance, float moved) noexcept {
+  constexpr float kRounded = 1 - 0x1p-21f;
+  const float left = distance * kRounded - moved;
+  return left > 0 ? left : 0;
+}
+float lessened_squared(float squared, float moved) noexcept {
+  const float left = lessened(sqrt_of(squared), moved);
+  return left * left;
+}
+
 /// Distances of sixteen pairs at once, in units.
 std::uint32_t evaluate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
                        float (&out_squared)[kBatch]) noexcept {
@@ -33,13 +44,14 @@ std::uint32_t evaluate(const Kernels& kernels, const PairFrame& frame, SearchScr
 class Search {
  public:
   Search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-         const Witness& witness, const Reach& reach) noexcept
+         const Witness& witness, const Reach& reach, Remainder* left = nullptr) noexcept
       : kernels_(kernels),
         frame_(frame),
         trees_{{*frame.a, frame.b_to_a, frame.scale2_a}, {*frame.b, frame.a_to_b, frame.scale2_b}},
         scratch_(scratch),
         pace_(pace),
-        reach_(reach) {
+        reach_(reach),
+        left_(left) {
     const float scale = frame.a_to_b.scale;
     volume_a_ = scale * scale * scale;
     out_.best = given_ = witness;
@@ -51,6 +63,29 @@ class Search {
 
   Bounds run(const image::Region& region) noexcept {
     visit_root(child_name(region.parent, region.slot));
+    return finish();
+  }
+
+  /// What is left of a search that was ended before the region moved by so much.
+  Bounds go_on(float moved) noexcept {
+    seen_ = lessened(left_->seen, moved);
+    size_ = left_->size;
+    pending_ = left_->pending;
+    for (std::uint32_t i = 0; i < size_; ++i) {
+      const Candidate& c = left_->stack[i];
+      scratch_.stack[i] = {c.a, c.b, lessened_squared(c.squared, moved)};
+    }
+    for (std::uint32_t i = 0; i < pending_; ++i) {
+      const Candidate& c = left_->batch[i];
+      scratch_.batch_a[i] = c.a;
+      scratch_.batch_b[i] = c.b;
+      scratch_.batch_squared[i] = lessened_squared(c.squared, moved);
+    }
+    for (std::uint32_t i = 0; i < left_->near.count; ++i) {
+      const Witness& w = left_->near.pairs[i];
+      keep({w.a, w.b, lessened(w.distance, moved)});
+    }
+    lower_threshold();
     return finish();
   }
 
@@ -189,13 +224,16 @@ class Search {
     }
     for (std::uint32_t i = 0; i < pending_; ++i) {
       if (squared[i] >= threshold_squared_) continue;
-      const Witness pair{scratch_.batch_a[i], scratch_.batch_b[i], sqrt_of(squared[i])};
-      if (pair.same_pair(given_)) continue;
-      const float dropped = scratch_.near.add(pair, most_);
-      if (dropped < most_) {
-        most_ = dropped;
-        lower_threshold();
-      }
+      keep({scratch_.batch_a[i], scratch_.batch_b[i], sqrt_of(squared[i])});
+    }
+  }
+
+  void keep(const Witness& pair) noexcept {
+    if (pair.same_pair(given_)) return;
+    const float dropped = scratch_.near.add(pair, most_);
+    if (dropped < most_) {
+      most_ = dropped;
+      lower_threshold();
     }
   }
 
@@ -209,14 +247,19 @@ class Search {
   void lower_threshold() noexcept {
     const float best =
         out_.best.known() && out_.best.distance < reach_.limit ? out_.best.distance : reach_.limit;
+    const float known = seen_ < most_ ? seen_ : most_;
     const float wanted = best + reach_.margin;
-    threshold_ = wanted < most_ ? wanted : most_;
+    threshold_ = wanted < known ? wanted : known;
     threshold_ = threshold_ > 0 ? threshold_ : 0;
     threshold_squared_ = threshold_ * threshold_;
   }
 
   /// Everything that was passed over is at least this far.
   float passed_over() const noexcept {
+    const float now = passed_over_now();
+    return now < seen_ ? now : seen_;
+  }
+  float passed_over_now() const noexcept {
     if (best_squared_ < threshold_squared_) return threshold_;
     float passed2 = passed_squared_;
     for (const float least : test_.passed) passed2 = least < passed2 ? least : passed2;
@@ -236,7 +279,19 @@ class Search {
     }
     out_.rest = proved(sqrt_of(least));
     out_.complete = false;
+    if (left_ != nullptr) leave();
     return out_;
+  }
+
+  void leave() noexcept {
+    left_->seen = threshold_;
+    left_->size = size_;
+    left_->pending = pending_;
+    for (std::uint32_t i = 0; i < size_; ++i) left_->stack[i] = scratch_.stack[i];
+    for (std::uint32_t i = 0; i < pending_; ++i) {
+      left_->batch[i] = {scratch_.batch_a[i], scratch_.batch_b[i], scratch_.batch_squared[i]};
+    }
+    left_->near = scratch_.near;
   }
 
   const Kernels& kernels_;
@@ -245,8 +300,10 @@ class Search {
   SearchScratch& scratch_;
   Pace& pace_;
   Reach reach_;
+  Remainder* left_ = nullptr;  // null: what is left is not wanted
   Witness given_;
   float volume_a_ = 1;      // a's unit of volume, in b's
+  float seen_ = kFarthest;  // pairs that were seen before, and not kept, are no nearer
   float most_ = kFarthest;  // pairs from here on have been dropped
   Bounds out_;
   float best_squared_ = kFar;
@@ -362,8 +419,16 @@ void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratc
 }
 
 Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-              std::uint32_t region, const Witness& witness, const Reach& reach) noexcept {
-  return Search(kernels, frame, scratch, pace, witness, reach).run(frame.a->regions[region]);
+              std::uint32_t region, const Witness& witness, const Reach& reach,
+              Remainder* left) noexcept {
+  return Search(kernels, frame, scratch, pace, witness, reach, left).run(frame.a->regions[region]);
+}
+
+Bounds go_on_searching(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
+                       Pace& pace, const Witness& witness, const Reach& reach, double moved,
+                       Remainder& left) noexcept {
+  return Search(kernels, frame, scratch, pace, witness, reach, &left)
+      .go_on(static_cast<float>(moved));
 }
 
 bool find_crossings(const Kernels& kernels, const levels::PairState& pair, const PairFrame& frame,

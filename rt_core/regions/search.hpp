@@ -48,6 +48,17 @@ struct SearchScratch {
   std::uint32_t batch_of[kBatch];  ///< the callers': which active region each is of
 };
 
+/// What a search that was ended early has not looked at, and what it knows of the rest: each pair
+/// of the region is below one of `stack`, in `batch`, in `near`, or was at least `seen` apart.
+struct Remainder {
+  float seen = 0;             ///< in units, as the distances of `near`
+  std::uint32_t size = 0;     ///< of stack
+  std::uint32_t pending = 0;  ///< of batch
+  Candidate stack[kMaxCandidates];
+  Candidate batch[kBatch];  ///< pairs of triangles
+  NearPairs near;
+};
+
 /// When a search has to end.
 class Pace {
  public:
@@ -123,9 +134,20 @@ struct Reach {
 /// Every pair of the region is kept, or at least `rest` apart. Complete: rest >= min(best, limit)
 /// + margin - kRounding, or the kept pairs are all that there is room for, and rest is no less than
 /// their distances, less kRounding. Ended before: rest and best still hold.
+/// @param left     where it is ended before: what it has not looked at; else as it was. May be null
 /// Cost: the budget, or all pairs of boxes nearer than the answer. No allocation, no recursion.
 Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-              std::uint32_t region, const Witness& witness, const Reach& reach) noexcept;
+              std::uint32_t region, const Witness& witness, const Reach& reach,
+              Remainder* left = nullptr) noexcept;
+
+/// Goes on with a search at the present poses. As search(), but what was seen before is not seen
+/// again: complete, `rest` may be less by what that has come nearer since. The distances in
+/// scratch.near of pairs that were kept before are bounds from below.
+/// @param moved  how far the region has moved since the search was ended, at most, in units
+/// @param left   of it; where this is ended too, what is left now
+Bounds go_on_searching(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
+                       Pace& pace, const Witness& witness, const Reach& reach, double moved,
+                       Remainder& left) noexcept;
 
 /// Adds all pairs of triangles that cross in a region, until the budget is used up. Boxes of
 /// crossing triangles overlap, so that none is passed over.

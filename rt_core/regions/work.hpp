@@ -56,6 +56,13 @@ struct Work {
     return meter.queries_in_all(unit_ns > 0 ? unit_ns : kAssumedUnit_ns);
   }
 
+  /// Until pace.no_limit(), of what the tick has left no more than this share.
+  void limit_to(double share) noexcept {
+    constexpr double kEndless = 1e18;
+    const double units = share * meter.queries_affordable(memory.pursuit.unit_ns);
+    if (units < kEndless) pace.limit(static_cast<std::uint64_t>(units));
+  }
+
   /// A region whose bounds have changed: sets its width and urgency.
   void widen(Active& item) noexcept;
   void widen_all() noexcept;

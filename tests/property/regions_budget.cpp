@@ -181,6 +181,29 @@ TEST(RegionsBudget, every_budget_gives_a_true_certificate) {
 
 /// Overlaps are looked at when searches have ended. (After a jump the old witnesses are measured
 /// too, whatever the budget: no contact is lost for want of sixteen pairs.)
+/// No search of a region ends within a tick here, so that all would be in vain if the next did not
+/// go on with it.
+TEST(RegionsBudget, searches_longer_than_a_tick_end_while_nothing_moves) {
+  BakedScene exact = scene_with(kSettings);
+  BakedScene budgeted = scene_with(kSettings);
+  const Pose poses[2] = {{{1.82, 0, 0}, {}}, {}};
+  const TickResult truth = tick_or_fail(*exact.engine, poses);
+  ASSERT_GT(truth.min_distance_m, 0);
+  constexpr std::uint64_t kUnits = 100;
+  constexpr std::uint64_t kMostTicks = 600;
+  const double sum = sum_of_forces(truth);
+  TickResult r;
+  std::uint64_t ticks = 0;
+  do {
+    r = tick_or_fail(*budgeted.engine, poses, {.units = kUnits});
+  } while (++ticks < kMostTicks && r.certificate.force_bound_N > 1e-3 * sum);
+  RecordProperty("ticks", std::to_string(ticks));
+  RecordProperty("units", std::to_string(truth.queries));
+  EXPECT_LT(r.certificate.force_bound_N, 1e-3 * sum);
+  EXPECT_NEAR(sum_of_forces(r), sum, 1e-3 * sum);
+  EXPECT_EQ(r.contacts.size(), truth.contacts.size());
+}
+
 TEST(RegionsBudget, overlaps_take_no_more_than_a_batch_beyond_the_units) {
   constexpr int kUntilJump = 24;
   for (const std::uint64_t units : {0u, 10u, 200u, 1000u, 3000u}) {

@@ -3,6 +3,8 @@
 // that hold wherever a search ends, overlap that begins at zero.
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "rt_core/regions/region_state.hpp"
 #include "rt_core/regions/sweep.hpp"
 #include "tests/support/brute_force.hpp"
@@ -106,6 +108,9 @@ struct SearchedPair {
     pair.image_b = &bodies().b.view;
     pair.unit_m = pair.image_a->header->radius_m;
     pair.scale_b = pair.image_b->header->radius_m / pair.unit_m;
+    move(pose);
+  }
+  void move(const Pose& pose) {
     levels::move(pair, pose, {});
     frame = regions::frame_of(pair);
   }
@@ -165,31 +170,134 @@ TEST(RegionSearch, bounds_hold_wherever_the_budget_ends_it) {
   }
 }
 
-TEST(RegionSearch, pairs_that_are_not_kept_are_beyond_rest) {
-  SearchedPair at(kNear);
-  const PlacedTriangles moved(bodies().a.mesh, kNear);
+/// All pairs of triangles of a region: those kept are no nearer than is said, all others beyond
+/// rest.
+void expect_pairs_bounded(const SearchedPair& at, const Pose& pose, std::uint32_t region,
+                          const regions::Bounds& found) {
+  const PlacedTriangles moved(bodies().a.mesh, pose);
   const PlacedTriangles fixed(bodies().b.mesh, {});
   const auto& triangles = bodies().a.view.region_triangles;
   const auto& others = bodies().b.view.region_triangles;
+  const regions::NearPairs& near = at.scratch->near;
+  const auto end = near.pairs + near.count;
+  for (std::uint32_t a = 0; a < triangles.size(); ++a) {
+    if (triangles[a].region != region) continue;
+    for (std::uint32_t b = 0; b < others.size(); ++b) {
+      const regions::Witness pair{a, b, 0};
+      const auto kept =
+          std::find_if(near.pairs, end, [&](const auto& w) { return w.same_pair(pair); });
+      const double d = distance_between(moved, triangles[a].source, fixed, others[b].source);
+      ASSERT_GE(d / at.pair.unit_m,
+                kept == end ? double(found.rest) : double(kept->distance) - kRounding);
+    }
+  }
+}
+
+TEST(RegionSearch, pairs_that_are_not_kept_are_beyond_rest) {
+  SearchedPair at(kNear);
   for (const std::uint32_t region : {2u, 7u, 11u}) {
     Meter meter({}, {});
     regions::Pace pace(meter);
     const regions::Bounds found = regions::search(regions::best_kernels(), at.frame, *at.scratch,
                                                   pace, region, {}, {2.0f, 0.02f});
-    const regions::NearPairs& near = at.scratch->near;
-    for (std::uint32_t a = 0; a < triangles.size(); ++a) {
-      if (triangles[a].region != region) continue;
-      for (std::uint32_t b = 0; b < others.size(); ++b) {
-        const auto end = near.pairs + near.count;
-        const regions::Witness pair{a, b, 0};
-        if (std::any_of(near.pairs, end, [&](const auto& w) { return w.same_pair(pair); })) {
-          continue;
+    expect_pairs_bounded(at, kNear, region, found);
+  }
+}
+
+/// A search in pieces of so many units; the bodies move in between.
+/// @param then  called with what is known after each piece
+template <class Then>
+std::uint64_t search_in_pieces(SearchedPair& at, std::uint32_t region, const regions::Reach& reach,
+                               std::uint64_t piece, const std::function<Pose(int)>& motion,
+                               const Then& then) {
+  regions::Remainder left;
+  regions::Witness witness;
+  std::uint64_t used = 0;
+  constexpr int kMostPieces = 10'000;
+  for (int i = 0; i < kMostPieces; ++i) {
+    const regions::Stand before = regions::stand_of(at.pair, region);
+    at.move(motion(i));
+    Meter meter({.units = piece}, {});
+    regions::Pace pace(meter);
+    if (witness.known()) {
+      float distances[regions::kBatch];
+      at.scratch->batch_a[0] = witness.a;
+      at.scratch->batch_b[0] = witness.b;
+      Meter free({}, {});
+      regions::Pace unpaced(free);
+      regions::measure(regions::best_kernels(), at.frame, *at.scratch, unpaced, 1, distances);
+      witness.distance = distances[0];
+    }
+    const regions::Bounds found =
+        i == 0 ? regions::search(regions::best_kernels(), at.frame, *at.scratch, pace, region,
+                                 witness, reach, &left)
+               : regions::go_on_searching(regions::best_kernels(), at.frame, *at.scratch, pace,
+                                          witness, reach,
+                                          regions::moved_since(before, at.pair, region), left);
+    used += meter.used();
+    witness = found.best;
+    then(i, found);
+    if (found.complete) return used;
+  }
+  ADD_FAILURE() << "no end";
+  return used;
+}
+
+TEST(RegionSearch, goes_on_where_it_was_left_and_does_nothing_twice) {
+  SearchedPair at(kNear);
+  const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
+  int in_pieces = 0;
+  for (std::uint32_t region = 0; region < truth.size(); region += 3) {
+    for (const float margin : {0.0f, 0.01f, -0.1f}) {
+      const regions::Reach reach{0.5f, margin};
+      Meter meter({}, {});
+      regions::Pace pace(meter);
+      regions::search(regions::best_kernels(), at.frame, *at.scratch, pace, region, {}, reach);
+      for (const std::uint64_t piece : {3u, 40u}) {
+        const double d = truth[region];
+        int pieces = 0;
+        regions::Bounds last;
+        const auto check = [&](int i, const regions::Bounds& found) {
+          pieces = i + 1;
+          last = found;
+          expect_kept_or_beyond_rest(found, at.scratch->near, d);
+        };
+        const std::uint64_t used = search_in_pieces(
+            at, region, reach, piece, [](int) { return kNear; }, check);
+        ASSERT_LE(used, meter.used());
+        in_pieces += pieces > 1 ? 1 : 0;
+        if (d > 0.5 + std::min(0.0, double(margin))) continue;
+        const double rounding = 1e-6 * pieces;  // what each piece gives away
+        ASSERT_GE(double(last.rest), d + std::min(0.0, double(margin)) - 2e-6 - rounding);
+        if (margin >= 0) {
+          ASSERT_NEAR(double(last.best.distance), d, kRounding + rounding);
         }
-        const double d = distance_between(moved, triangles[a].source, fixed, others[b].source);
-        ASSERT_GE(d / at.pair.unit_m, double(found.rest));
       }
     }
   }
+  EXPECT_GT(in_pieces, 20);
+}
+
+TEST(RegionSearch, goes_on_with_true_bounds_while_the_bodies_move) {
+  std::mt19937 rng(11);
+  int in_pieces = 0;
+  for (const std::uint32_t region : {2u, 7u, 11u}) {
+    for (const double speed : {1e-5, 2e-4, 3e-3}) {
+      Pose pose = kNear;
+      SearchedPair at(pose);
+      const auto motion = [&](int) {
+        pose.position_m += speed * random_unit(rng);
+        pose.orientation = pose.orientation * turn(speed * random_unit(rng));
+        return pose;
+      };
+      const auto check = [&](int i, const regions::Bounds& found) {
+        in_pieces += i > 0 ? 1 : 0;
+        if (i % 4 == 1 || found.complete) expect_pairs_bounded(at, pose, region, found);
+      };
+      search_in_pieces(at, region, {2.0f, 0.02f}, 20, motion, check);
+    }
+  }
+  EXPECT_GT(in_pieces, 20);
 }
 
 TEST(RegionState, no_point_moves_farther_than_is_said) {
@@ -212,7 +320,7 @@ TEST(RegionState, no_point_moves_farther_than_is_said) {
       pose.orientation = turn(0.3 * random_unit(rng));
       levels::move(at.pair, pose, {});
     }
-    const double most = regions::moved_since(state, at.pair, region);
+    const double most = regions::moved_since(state.at, at.pair, region);
     for (std::size_t i = 0; i < before.size(); ++i) {
       const auto& t = bodies().a.view.region_triangles[i];
       if (t.region != region) continue;
