@@ -23,6 +23,7 @@ struct Case {
   Settings settings;
   std::uint64_t units;
   std::uint64_t hash;
+  double pace = 1;  ///< of the motion
 };
 
 constexpr double kDelta_m = 0.05;
@@ -64,6 +65,11 @@ const Case kCases[] = {
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      100,
      0x4985923f876e54fb},
+    {"regions, 60 units, slowly",
+     {.engine = EngineKind::regions, .delta_m = kDelta_m},
+     60,
+     0xa3cae64d535577c6,
+     0.03},
     {"regions, tolerance",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .force_tolerance_N = 3},
      kUnlimited,
@@ -90,7 +96,7 @@ class Hash {
 };
 
 /// Around the other body, in and out of contact; no function of the C library but sqrt.
-Pose pose_of(int tick) {
+Pose pose_of(double tick) {
   const double u = 0.02 * tick;
   const double wave = u - 2 * static_cast<double>(static_cast<int>(u / 2)) - 1;  // -1 to 1
   const double n = sqrt_of(1 + 0.09 * u * u + 0.25 * wave * wave);
@@ -123,7 +129,7 @@ std::uint64_t hash_of(const ImageView& image, const Case& test) {
   if (create(scene, test.settings, limits, memory.bytes(), engine) != Status::ok) return 0;
   Hash hash;
   for (int i = 0; i < kTicks; ++i) {
-    const Pose poses[2] = {pose_of(i), {}};
+    const Pose poses[2] = {pose_of(test.pace * i), {}};
     TickResult r;
     if (tick(*engine, poses, {.units = test.units}, r) != Status::ok) return 0;
     hash.add(r.wrench.force_N);
