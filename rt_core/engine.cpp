@@ -59,11 +59,19 @@ double least_error_m(std::span<const levels::PairState> pairs) noexcept {
   return deviation_m + kNumericalError * largest_unit_m(pairs);
 }
 
+template <class QueryResult>
+ContactStatus contact_status(const QueryResult& found, double delta_m) noexcept {
+  if (found.contacts > 0) return ContactStatus::found;
+  const bool open = found.unresolved_lower_m < delta_m || found.capped_gap_m > 0;
+  return open ? ContactStatus::undecided : ContactStatus::ruled_out;
+}
+
 /// What both queries say of their answer.
 template <class QueryResult>
 Certificate certify(const QueryResult& found, double upper_m, double delta_m,
                     double least_error_m) noexcept {
   Certificate c;
+  c.contact = contact_status(found, delta_m);
   const double nearest =
       found.contacts > 0 && found.min_distance_m < delta_m ? found.min_distance_m : delta_m;
   const double below = found.unresolved_lower_m < nearest ? nearest - found.unresolved_lower_m : 0;

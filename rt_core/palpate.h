@@ -124,6 +124,9 @@ typedef struct palpate_contact {
   double centre_m[3];
 } palpate_contact;
 
+/* Without contacts: is it certain that nothing is nearer than delta (ContactStatus)? */
+enum { PALPATE_CONTACT_RULED_OUT = 0, PALPATE_CONTACT_UNDECIDED = 1, PALPATE_CONTACT_FOUND = 2 };
+
 typedef struct palpate_result {
   double force_N[3], torque_Nm[3]; /* on the tool, torque about the tool's origin */
   double min_distance_m;           /* NaN without contacts */
@@ -131,6 +134,8 @@ typedef struct palpate_result {
   uint64_t units_used, queries, front_nodes;
   uint32_t contacts, clusters;
   uint32_t truncated_by_time, truncated_by_units, truncated_by_memory, iteration_cap_met;
+  uint32_t contact; /* PALPATE_CONTACT_... */
+  uint32_t reserved;
 } palpate_result;
 
 /* One contact query and its wrench. poses: [bodies]. */

@@ -112,6 +112,8 @@ void put(const TickResult& from, palpate_result& to) noexcept {
   to.truncated_by_units = from.certificate.truncated_by_units ? 1 : 0;
   to.truncated_by_memory = from.certificate.truncated_by_memory ? 1 : 0;
   to.iteration_cap_met = from.certificate.iteration_cap_met ? 1 : 0;
+  to.contact = static_cast<std::uint32_t>(from.certificate.contact);
+  to.reserved = 0;
 }
 
 Pose pose_of(const palpate_pose& from) noexcept {

@@ -149,8 +149,17 @@ struct Contact {
   std::uint32_t piece_b = 0, level_b = 0;
 };
 
+/// What a tick knows of whether anything is nearer than delta, of the surfaces in the images.
+enum class ContactStatus : std::uint8_t {
+  ruled_out,  ///< nothing is: no contact is reported, and none has been missed
+  undecided,  ///< no contact is reported, but the budget or the level of detail did not do for
+              ///< ruling one out
+  found,      ///< contacts are reported
+};
+
 /// What is certain about the answer.
 struct Certificate {
+  ContactStatus contact = ContactStatus::undecided;
   double error_bound_m = 0;  ///< the true least distance is within this of the reported one; where
                              ///< no contact is reported, of delta. It counts what detail was left
                              ///< out before baking (Header::source_deviation_rel)
@@ -210,9 +219,9 @@ Status configure(Engine& engine, const Settings& settings) noexcept;
 /// @param poses  [bodies] body to world; finite, quaternions of unit length within 1e-3 (they are
 /// normalised)
 /// @param out    written only where the result is Status::ok
-/// Errors: bad_pose, bad_argument. Cost: the budget, plus at most one convex query and a tail that
-/// is linear in the front and in contacts * log(contacts), and for which time is left before the
-/// deadline. An exact query of the levels engine that has no budget is done twice in the first tick
+/// Errors: bad_pose, bad_argument. Cost: the budget, plus at most one convex query (regions engine:
+/// 40 work units) and a tail that is linear in the front and in contacts * log(contacts), and for
+/// which time is left before the deadline. An exact query of the levels engine that has no budget is done twice in the first tick
 /// in which its nodes or contacts do not fit. No allocation, no lock, no recursion, bounded stack.
 Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
             TickResult& out) noexcept;

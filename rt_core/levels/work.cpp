@@ -19,7 +19,7 @@ bool Work::rests(Node& node) noexcept {
 bool Work::rests_apart(Node& node, const convex::Distance& own) noexcept {
   const PairState& pair = pair_of(node);
   if (own.lower_bound >= pair.delta && certain_now(pair, node) < pair.delta &&
-      probe.has_tighter(pair, node) && !meter.out_of_units()) {
+      probe.has_tighter(pair, node) && !out_of_budget()) {
     static_cast<void>(probe.cull(pair, node));
   }
   const double certain = certain_now(pair, node);

@@ -54,6 +54,8 @@ void expect_certified(const TickResult& r, double distance) {
   ASSERT_TRUE(std::isfinite(bound));
   if (r.contacts.empty()) {
     EXPECT_GE(distance + bound, 0.9999 * kDelta) << "a contact was lost";
+    const bool touches = distance < 0.9999 * kDelta;
+    EXPECT_FALSE(touches && r.certificate.contact == ContactStatus::ruled_out);
   } else if (distance > 0) {
     EXPECT_LE(std::abs(r.min_distance_m - distance), bound + 2e-6);
   }

@@ -17,6 +17,7 @@ inline void expect_certified(const TickResult& r, double truth, double delta) {
   ASSERT_TRUE(std::isfinite(bound));
   if (r.contacts.empty()) {
     EXPECT_GE(truth + bound, 0.9999 * delta) << "a contact was lost";
+    EXPECT_FALSE(truth < 0.9999 * delta && r.certificate.contact == ContactStatus::ruled_out);
   } else if (truth > 0) {
     EXPECT_LE(std::abs(r.min_distance_m - truth), bound + 2e-6);
   }

@@ -13,7 +13,8 @@
 // tells; the mean time of a work unit; ticks that had no contact where the engine's exact query has
 // one (lost), those among them whose force is more than a twentieth of the largest, how many follow
 // each other at most, and those whose certificate rules out the contact that is there (denied; must
-// be 0); and the root mean square error of the force over the largest (nrmse), all against the
+// be 0); ticks that rightly have none but do not rule one out (undecided), of those that have none
+// (apart); and the root mean square error of the force over the largest (nrmse), all against the
 // exact query. Wants a core of its own: `chrt -f 50 taskset -c 1 bench_overrun ...`.
 #include <algorithm>
 #include <chrono>
@@ -102,6 +103,8 @@ struct Row {
   std::uint64_t lost_felt = 0;    ///< of these, with a force of more than kFelt of the peak
   std::uint64_t lost_in_row = 0;  ///< most that follow each other
   std::uint64_t denied = 0;       ///< of the lost, by their certificates
+  std::uint64_t undecided = 0;    ///< of the ticks apart
+  std::uint64_t apart = 0;        ///< nothing is nearer than delta
   double square_error = 0;        ///< of the force over the peak, summed
 };
 
@@ -151,7 +154,12 @@ Row run(Bench& bench, const std::vector<Place>& places, std::uint64_t ticks, All
     row.lost += lost ? 1u : 0u;
     row.lost_felt += lost && norm(place.force_N) > kFelt * peak ? 1u : 0u;
     const double least_m = delta_m - r.certificate.error_bound_m;
-    row.denied += lost && place.distance_m < least_m - kRounding * delta_m ? 1u : 0u;
+    const bool ruled_out = r.certificate.contact == ContactStatus::ruled_out ||
+                           place.distance_m < least_m - kRounding * delta_m;
+    row.denied += lost && ruled_out ? 1u : 0u;
+    row.apart += place.touches ? 0u : 1u;
+    const bool undecided = r.certificate.contact == ContactStatus::undecided;
+    row.undecided += !place.touches && undecided ? 1u : 0u;
     if (!r.certificate.truncated_by_time) continue;
     const double over = us_since(budget.deadline_ns, end);
     row.over_us.push_back(static_cast<float>(over));
@@ -177,20 +185,22 @@ int measure(std::string_view engine, std::uint64_t ticks, int count, char** budg
   Bench bench(a, b, settings);
   std::puts(
       "engine,budget,ticks,ended_by_deadline,over_p50_us,over_p99.9_us,over_p99.999_us,"
-      "over_max_us,over_max_undisturbed_us,unit_us,lost,lost_felt,lost_in_row,denied,nrmse");
+      "over_max_us,over_max_undisturbed_us,unit_us,lost,lost_felt,lost_in_row,denied,undecided,"
+      "apart,nrmse");
   for (int i = 0; i < count; ++i) {
     Row row = run(bench, places, ticks, Allowed(budgets[i]));
     std::sort(row.over_us.begin(), row.over_us.end());
-    std::printf("%.*s,%s,%llu,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%.3f,%llu,%llu,%llu,%llu,%.4f\n",
-                static_cast<int>(engine.size()), engine.data(), budgets[i],
-                static_cast<unsigned long long>(ticks), row.over_us.size(),
-                at_share(row.over_us, 0.5), at_share(row.over_us, 0.999),
-                at_share(row.over_us, 0.99999), at_share(row.over_us, 1), row.undisturbed_us,
-                row.busy_us / std::max(row.units, 1.0), static_cast<unsigned long long>(row.lost),
-                static_cast<unsigned long long>(row.lost_felt),
-                static_cast<unsigned long long>(row.lost_in_row),
-                static_cast<unsigned long long>(row.denied),
-                std::sqrt(row.square_error / static_cast<double>(ticks)));
+    std::printf(
+        "%.*s,%s,%llu,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%.3f,%llu,%llu,%llu,%llu,%llu,%llu,%.4f\n",
+        static_cast<int>(engine.size()), engine.data(), budgets[i],
+        static_cast<unsigned long long>(ticks), row.over_us.size(), at_share(row.over_us, 0.5),
+        at_share(row.over_us, 0.999), at_share(row.over_us, 0.99999), at_share(row.over_us, 1),
+        row.undisturbed_us, row.busy_us / std::max(row.units, 1.0),
+        static_cast<unsigned long long>(row.lost), static_cast<unsigned long long>(row.lost_felt),
+        static_cast<unsigned long long>(row.lost_in_row),
+        static_cast<unsigned long long>(row.denied), static_cast<unsigned long long>(row.undecided),
+        static_cast<unsigned long long>(row.apart),
+        std::sqrt(row.square_error / static_cast<double>(ticks)));
     std::fflush(stdout);
   }
   return 0;

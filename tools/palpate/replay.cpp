@@ -46,6 +46,7 @@ struct Summary {
   std::uint64_t p50_ns = 0, p99_ns = 0, max_ns = 0;
   double contacts_mean = 0, force_mean_N = 0, force_max_N = 0;
   std::size_t truncated = 0;
+  std::size_t undecided = 0;  ///< no contact, and none ruled out
 };
 
 Summary summarise(std::span<const TickRow> ticks) {
@@ -59,6 +60,7 @@ Summary summarise(std::span<const TickRow> ticks) {
     s.force_mean_N += share * force_N;
     s.force_max_N = std::max(s.force_max_N, force_N);
     if (row.certificate.truncated()) ++s.truncated;
+    if (row.certificate.contact == ContactStatus::undecided) ++s.undecided;
   }
   std::sort(times.begin(), times.end());
   s.p50_ns = times[times.size() / 2];
@@ -74,6 +76,7 @@ void print_json(const Recording& recording, const Summary& s, bool profile) {
       {"contacts_mean", s.contacts_mean},
       {"force_N", {{"mean", s.force_mean_N}, {"max", s.force_max_N}}},
       {"truncated", s.truncated},
+      {"undecided", s.undecided},
       {"image_bytes", recording.image_bytes},
       {"engine_bytes", recording.engine_bytes}};
   if (profile) json["profile"] = profile_json(*recording.counters);
@@ -83,9 +86,9 @@ void print_json(const Recording& recording, const Summary& s, bool profile) {
 void print_text(const Recording& recording, const Summary& s) {
   std::printf(
       "%zu ticks: median %.1f us, p99 %.1f us, max %.1f us; %.1f contacts and %.3g N on average; "
-      "%zu truncated\n",
+      "%zu truncated, %zu without a contact that do not rule one out\n",
       recording.ticks.size(), double(s.p50_ns) * 1e-3, double(s.p99_ns) * 1e-3,
-      double(s.max_ns) * 1e-3, s.contacts_mean, s.force_mean_N, s.truncated);
+      double(s.max_ns) * 1e-3, s.contacts_mean, s.force_mean_N, s.truncated, s.undecided);
 }
 
 /// CONTACTS.csv: rows are kept as they are while they are few, so that making text of them does not

@@ -85,6 +85,7 @@ bool read(std::string_view line, std::size_t expected_tick, TickRow& out) {
   fields >> out.front_nodes >> out.queries >> out.time_ns >> truncated >> out.certificate.s_worst >>
       out.certificate.error_bound_m;
   out.certificate.truncated_by_time = truncated != 0;
+  if (out.contacts > 0) out.certificate.contact = ContactStatus::found;
   return fields.done() && tick == expected_tick;
 }
 

@@ -85,9 +85,10 @@ std::string timing_lines(const LoopReport& r) {
 }
 
 std::string contact_lines(const LoopReport& r) {
-  return line("contacts", format("%.1f a tick; touching in %.1f %% of the ticks",
-                                 mean(static_cast<double>(r.contacts), r.queried),
-                                 100 * share(r.touching, r.queried))) +
+  return line("contacts",
+              format("%.1f a tick; touching in %.1f %% of the ticks, undecided in %.1f %%",
+                     mean(static_cast<double>(r.contacts), r.queried),
+                     100 * share(r.touching, r.queried), 100 * share(r.undecided, r.queried))) +
          line("force", format("mean %.3f N, max %.3f N; torque max %.4f N m",
                               mean(r.force_N_sum, r.ticks), r.force_N_max, r.torque_Nm_max)) +
          line("energy",
@@ -175,6 +176,7 @@ nlohmann::json run_json(const RunOutcome& o) {
   j["contacts_late"] = o.contacts_late ? nlohmann::json(*o.contacts_late) : nlohmann::json();
   j["truncated"] = r.truncated;
   j["touching"] = r.touching;
+  j["undecided"] = r.undecided;
   j["contacts_mean"] = mean(static_cast<double>(r.contacts), r.queried);
   j["force_N"] = {{"mean", mean(r.force_N_sum, r.ticks)}, {"max", r.force_N_max}};
   j["torque_Nm"] = {{"max", r.torque_Nm_max}};

@@ -156,6 +156,7 @@ void Loop::account(const Tick& tick) noexcept {
     ++r.queried;
     if (tick.result.certificate.truncated()) ++r.truncated;
     if (!tick.result.contacts.empty()) ++r.touching;
+    if (tick.result.certificate.contact == ContactStatus::undecided) ++r.undecided;
     r.contacts += tick.result.contacts.size();
   }
   const double force_N = norm(command_.wrench.force_N);

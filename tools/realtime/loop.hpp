@@ -59,6 +59,7 @@ struct LoopReport {
   std::uint64_t queried = 0;         ///< ticks that asked the contact query
   std::uint64_t truncated = 0;       ///< ticks whose refinement the budget ended
   std::uint64_t touching = 0;        ///< ticks with a contact
+  std::uint64_t undecided = 0;       ///< ticks with none, in which none was ruled out
   std::uint64_t contacts = 0;        ///< sum over ticks
   double force_N_sum = 0;            ///< sum over ticks of the length of the force sent
   double force_N_max = 0;
