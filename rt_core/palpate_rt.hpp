@@ -221,8 +221,9 @@ Status configure(Engine& engine, const Settings& settings) noexcept;
 /// @param out    written only where the result is Status::ok
 /// Errors: bad_pose, bad_argument. Cost: the budget, plus at most one convex query (regions engine:
 /// 40 work units) and a tail that is linear in the front and in contacts * log(contacts), and for
-/// which time is left before the deadline. An exact query of the levels engine that has no budget is done twice in the first tick
-/// in which its nodes or contacts do not fit. No allocation, no lock, no recursion, bounded stack.
+/// which time is left before the deadline. An exact query of the levels engine that has no budget
+/// is done twice in the first tick in which its nodes or contacts do not fit. No allocation, no
+/// lock, no recursion, bounded stack.
 Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
             TickResult& out) noexcept;
 
