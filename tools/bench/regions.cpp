@@ -175,7 +175,7 @@ void print_plans(const SceneName& scene, double delta_rel, Bench& bench,
     plans.push_back({.budget_us = budget_us});
     plans.push_back({.cold = true, .budget_us = budget_us});
   }
-  for (const std::uint64_t units : {1000u, 2500u, 5000u, 10000u}) {
+  for (const std::uint64_t units : {200u, 300u, 400u, 500u, 600u, 1000u, 2500u, 5000u, 10000u}) {
     plans.push_back({.budget_units = units});
     plans.push_back({.cold = true, .budget_units = units});
   }
