@@ -33,9 +33,9 @@ void certify(Work& work) noexcept {
     const PairState& pair = work.pair_of(item);
     const Witness& witness = work.witness_of(item);
     const float upper = witness.known() ? witness.distance - kRounding : work.delta_of(item);
-    const auto lower = static_cast<double>(item.rest < upper ? item.rest : upper);
-    const double lower_m = (lower > 0 ? lower : 0) * pair.unit_m;
-    if (lower < pair.delta && lower_m < result.unresolved_lower_m) {
+    const float lower = item.rest < upper ? item.rest : upper;
+    const double lower_m = static_cast<double>(lower > 0 ? lower : 0) * pair.unit_m;
+    if (lower < work.delta_of(item) && lower_m < result.unresolved_lower_m) {
       result.unresolved_lower_m = lower_m;
     }
     result.open_m += work.width_m(item) + left_out_m(work, item) + not_felt_m(work, item);

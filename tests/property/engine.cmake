@@ -2,6 +2,7 @@
 if(PALPATE_HOST)
   palpate_test(engine_exact SOURCES property/engine_exact.cpp LIBS bodies_support LABEL property)
   palpate_test(engine_budget SOURCES property/engine_budget.cpp LIBS bodies_support LABEL property)
+  palpate_test(engine_contact_status SOURCES property/engine_contact_status.cpp LIBS bodies_support LABEL property)
   palpate_test(engine_deadline SOURCES property/engine_deadline.cpp LIBS palpate_bake LABEL property)
   palpate_test(engine_levels SOURCES property/engine_levels.cpp LIBS bodies_support LABEL property)
   palpate_test(engine_order SOURCES property/engine_order.cpp LIBS bodies_support LABEL property)
