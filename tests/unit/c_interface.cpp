@@ -106,6 +106,7 @@ TEST(CInterface, gives_the_same_bits_as_the_engine) {
     EXPECT_EQ(std::memcmp(c.torque_Nm, &r.wrench.torque_Nm, sizeof c.torque_Nm), 0);
     EXPECT_EQ(c.error_bound_m, r.certificate.error_bound_m);
     EXPECT_EQ(c.queries, r.queries);
+    EXPECT_EQ(c.contact, static_cast<std::uint32_t>(r.certificate.contact));
     ASSERT_EQ(c.contacts, r.contacts.size());
     contacts += c.contacts;
     for (std::uint32_t k = 0; k < c.contacts; ++k) {

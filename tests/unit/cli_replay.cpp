@@ -218,6 +218,7 @@ TEST_F(Replay, Summary_is_a_line_or_one_json_object_or_nothing) {
   EXPECT_EQ(json["ticks"], 6);
   EXPECT_GE(json["tick_ns"]["max"], json["tick_ns"]["p50"]);
   EXPECT_GT(json["engine_bytes"], 0);
+  EXPECT_EQ(json["undecided"], 0);  // no budget
   EXPECT_EQ(replay({"--quiet"}).out, "");
 }
 
