@@ -4,34 +4,27 @@
 
 #include "tests/support/brute_force.hpp"
 #include "tests/support/placements.hpp"
-#include "tests/support/shapes.hpp"
+#include "tests/support/two_balls.hpp"
 
 namespace palpate::test {
 namespace {
 
 constexpr double kDelta_m = 0.05;
 
-const BakedBody& body_a() {
-  static const BakedBody body(bumpy_ball(14, 20, 1), bake::ForEngine::both);
-  return body;
-}
-const BakedBody& body_b() {
-  static const BakedBody body(bumpy_ball(16, 16, 0.8), bake::ForEngine::both);
-  return body;
-}
-
 /// At this distance, along some direction.
 Pose placed(double distance_m, int which) {
   std::mt19937 rng(static_cast<unsigned>(which));
   const Vec3d from = random_unit(rng);
-  return approach(body_a().mesh, body_b().mesh, distance_m, 4, from, turn(random_unit(rng)));
+  return approach(two_balls().a.mesh, two_balls().b.mesh, distance_m, 4, from,
+                  turn(random_unit(rng)));
 }
 
 class ContactStatusOf : public testing::TestWithParam<EngineKind> {
  protected:
   ContactStatus status(double distance_m, int which, std::uint64_t units) const {
     const Settings settings{.engine = GetParam(), .delta_m = kDelta_m, .exact = true};
-    BakedScene scene({body_a().view, body_b().view}, {{0, 1}}, settings, {.nodes = 1u << 14});
+    BakedScene scene({two_balls().a.view, two_balls().b.view}, {{0, 1}}, settings,
+                     {.nodes = 1u << 14});
     const Pose poses[2] = {placed(distance_m, which), {}};
     return tick_or_fail(*scene.engine, poses, {.units = units}).certificate.contact;
   }

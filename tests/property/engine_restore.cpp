@@ -5,8 +5,7 @@
 #include <cstring>
 
 #include "rt_core/workspace.hpp"
-#include "tests/support/baked_scene.hpp"
-#include "tests/support/shapes.hpp"
+#include "tests/support/two_balls.hpp"
 
 namespace palpate::test {
 namespace {
@@ -14,15 +13,6 @@ namespace {
 Pose slide(double i) {
   return {{1.75 + 0.02 * std::sin(0.2 * i), 0.3 * std::sin(0.03 * i), 0.004 * i},
           turn({0.01 * i, 0.004 * i, 0})};
-}
-
-const BakedBody& body_a() {
-  static const BakedBody body(bumpy_ball(14, 20, 1), bake::ForEngine::both);
-  return body;
-}
-const BakedBody& body_b() {
-  static const BakedBody body(bumpy_ball(16, 16, 0.8), bake::ForEngine::both);
-  return body;
 }
 
 const Limits kLimits{.nodes = 1u << 14};
@@ -45,8 +35,8 @@ TEST_P(EngineRestore, continues_with_the_same_bits_at_another_address) {
   };
   for (const auto [units, pace] : {Case{60, 1}, Case{60, 0.05}, Case{1000000, 1}}) {
     const Settings settings{.engine = GetParam(), .delta_m = 0.05, .s0 = 0.01};
-    BakedScene through({body_a().view, body_b().view}, {{0, 1}}, settings, kLimits);
-    BakedScene halfway({body_a().view, body_b().view}, {{0, 1}}, settings, kLimits);
+    BakedScene through({two_balls().a.view, two_balls().b.view}, {{0, 1}}, settings, kLimits);
+    BakedScene halfway({two_balls().a.view, two_balls().b.view}, {{0, 1}}, settings, kLimits);
     for (int i = 0; i < 30; ++i) {
       const Pose poses[2] = {slide(pace * i), {}};
       expect_same_bits(tick_or_fail(*through.engine, poses, {.units = units}),
@@ -57,7 +47,7 @@ TEST_P(EngineRestore, continues_with_the_same_bits_at_another_address) {
     std::memset(halfway.memory.data.get(), 0xa5, copy.size);
     std::vector<AlignedBytes> images;
     std::vector<ImageView> views(2);
-    for (const BakedBody* body : {&body_a(), &body_b()}) {
+    for (const BakedBody* body : {&two_balls().a, &two_balls().b}) {
       images.emplace_back(body->bytes->size);
       std::memcpy(images.back().data.get(), body->bytes->data.get(), body->bytes->size);
       ASSERT_EQ(validate(images.back().span(), views[images.size() - 1]), Status::ok);
@@ -81,14 +71,14 @@ INSTANTIATE_TEST_SUITE_P(Engines, EngineRestore,
 
 TEST(EngineRestoreRefusals, what_the_copy_was_not_made_for_is_refused) {
   const Settings settings{.delta_m = 0.05};
-  BakedScene scene({body_a().view, body_b().view}, {{0, 1}}, settings, kLimits);
+  BakedScene scene({two_balls().a.view, two_balls().b.view}, {{0, 1}}, settings, kLimits);
   Engine* engine = nullptr;
   const std::span<std::byte> memory = scene.memory.span();
   const auto again = [&](const Scene& other, const Limits& limits) {
     return restore(other, limits, EngineKind::levels, memory, engine);
   };
   EXPECT_EQ(again(scene.scene(), kLimits), Status::ok);
-  const std::vector<ImageView> swapped{body_b().view, body_a().view};
+  const std::vector<ImageView> swapped{two_balls().b.view, two_balls().a.view};
   EXPECT_EQ(again({swapped, scene.pairs, 0}, kLimits), Status::bad_argument);
   EXPECT_EQ(again({scene.bodies, scene.pairs, 1}, kLimits), Status::bad_argument);
   Limits fewer = kLimits;

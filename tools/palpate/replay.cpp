@@ -86,7 +86,7 @@ void print_json(const Recording& recording, const Summary& s, bool profile) {
 void print_text(const Recording& recording, const Summary& s) {
   std::printf(
       "%zu ticks: median %.1f us, p99 %.1f us, max %.1f us; %.1f contacts and %.3g N on average; "
-      "%zu truncated, %zu without a contact that do not rule one out\n",
+      "%zu truncated, %zu undecided\n",
       recording.ticks.size(), double(s.p50_ns) * 1e-3, double(s.p99_ns) * 1e-3,
       double(s.max_ns) * 1e-3, s.contacts_mean, s.force_mean_N, s.truncated, s.undecided);
 }
