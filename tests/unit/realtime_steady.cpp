@@ -76,11 +76,14 @@ struct UncertainWall {
   double error_m = 0;
   double more_N = 0;
   bool gone = false;
+  bool ended_deep = false;  ///< by the budget, while overlapping
   QueryOf contacts{[this](const Pose& pose, const Budget& budget, TickResult& out) {
     const Status status = wall(kStiffness_N_per_m)(pose, budget, out);
     out.wrench.force_N.z += more_N;
     if (gone) out = {};
     out.certificate.error_bound_m = error_m;
+    out.certificate.truncated_by_units = ended_deep;
+    if (ended_deep) out.min_distance_m = -1e-4;
     return status;
   }};
   SteadyQuery query{contacts, {}, kStiffness_N_per_m, kPeriod_s};
@@ -108,6 +111,22 @@ TEST(SteadyQuery, believes_what_is_certain_at_once) {
   const double after_N = force_N(wall.query, slid(102));
   EXPECT_GT(after_N, 0.7 + 0.064 - 1e-9);
   EXPECT_LT(after_N, 0.8 - 0.03);
+}
+
+TEST(SteadyQuery, is_certain_of_less_than_the_motion_makes_where_a_budget_ended_an_overlap) {
+  UncertainWall wall;
+  for (int i = 0; i < 100; ++i) static_cast<void>(force_N(wall.query, slid(i)));
+  wall.ended_deep = true;
+  wall.more_N = 0.1;
+  double before_N = 0.6;
+  constexpr double kOfMotion_N = kStiffness_N_per_m * 1e-4;
+  for (int i = 100; before_N < 0.7 - 1e-12 && i < 200; ++i) {
+    const double now_N = force_N(wall.query, slid(i));
+    EXPECT_LE(now_N - before_N, 0.6 * kOfMotion_N + 2 * kSmooth_N);
+    EXPECT_GT(now_N, before_N);
+    before_N = now_N;
+  }
+  EXPECT_NEAR(before_N, 0.7, 1e-12);
 }
 
 TEST(SteadyQuery, lets_what_may_not_be_true_in_no_faster_than_the_force_usually_changes) {

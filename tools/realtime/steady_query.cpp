@@ -46,13 +46,17 @@ Wrench SteadyQuery::believed(const TickResult& found, const Vec6& way, const Vec
   const double doubts_N = before_doubt_N_ + doubt_N;
   before_doubt_N_ = doubt_N;
   const bool apart = found.contacts.empty();
+  const bool deep = found.certificate.truncated() && found.min_distance_m < 0;
   const auto follow = [&](Doubtful& part, const Vec3d& told, const Vec3d& modelled, double arm,
                           double most) {
     // Where no contact is found, no more is felt than the doubt leaves possible.
     const double changed = norm(apart ? part.believed() : told - part.told());
-    double certain = std::max({changed - arm * doubts_N, norm(modelled) - arm * slope_N, 0.0});
+    const double of_motion = arm * stiffness_N_per_m_ * motion_m;
+    double beyond_doubt = changed - arm * doubts_N;
+    if (deep) beyond_doubt = std::min(beyond_doubt, kDeepShare * of_motion);
+    double certain = std::max({beyond_doubt, norm(modelled) - arm * slope_N, 0.0});
     if (!begun_) certain = kInfinity;
-    return part.follow(told, {certain, arm * stiffness_N_per_m_ * motion_m, kLeastShare * most});
+    return part.follow(told, {certain, of_motion, kLeastShare * most});
   };
   const Wrench out{follow(force_N_, found.wrench.force_N, linear(fall), 1, most_N_),
                    follow(torque_Nm_, found.wrench.torque_Nm, angular(fall), arm_m_, most_Nm_)};

@@ -23,7 +23,9 @@ struct SteadyRates {
 /// kDoubt times as large, for the distance is not the only one. A change of the wrench is certain
 /// as far as it is larger than the doubts of this tick and of the last; and so is what the linear
 /// model says (linear_contact.hpp), less what a slope of kSlope makes of the motion, which a
-/// simplified surface may have where the original has none. So an exact answer, which leaves
+/// simplified surface may have where the original has none. How deep bodies overlap where a budget
+/// ended the query, the certificate does not tell: then no more is certain than kDeepShare of what
+/// the stiffness makes of the motion, and what the model says. So an exact answer, which leaves
 /// nothing open, is believed at once and whole; simplified contacts, whose slopes and corners are
 /// not those of the original, and those that a budget finds late, come in as the force changes
 /// anyway.
@@ -50,6 +52,7 @@ class SteadyQuery final : public ContactQuery {
  private:
   static constexpr double kDoubt = 1.5;
   static constexpr double kSlope = 0.4;
+  static constexpr double kDeepShare = 0.6;
   /// Of the rates: what is let in however smooth a contact is.
   static constexpr double kLeastShare = 1.0 / 75;
 
