@@ -25,6 +25,10 @@ constexpr double kSweptPerRegion = 0.25;
 /// none would be left to search with, and so it would stay.
 constexpr double kMostMeasured = 0.5;
 
+/// Of image::Region::reach, with room for rounding. Odometers alone read nothing but the state, so
+/// that far regions cost next to nothing.
+constexpr double kMostReach = 1.51;
+
 /// Rounded towards minus infinity far enough for float.
 float float_below(double v) noexcept { return static_cast<float>(v - 1e-7 * (v < 0 ? -v : v)); }
 
@@ -72,7 +76,7 @@ void gather_regions(Work& work, std::uint32_t index, bool swept) noexcept {
   const double far = pair.delta + pair.deviation;
   for (std::uint32_t i = 0; i < regions.size(); ++i) {
     const RegionState& state = memory.states[first + i];
-    if (static_cast<double>(state.lower) - way_since(state, pair) >= far) continue;
+    if (static_cast<double>(state.lower) - way_since(state.at, pair, kMostReach) >= far) continue;
     const double moved_by = swept ? kMotionSlack : moved_since(state.at, pair, i);
     const double lower = static_cast<double>(state.lower) - moved_by;
     if (lower >= pair.delta) {
@@ -92,13 +96,27 @@ void take_if_nearer(Work& work, std::uint32_t index, const Witness& pair) noexce
   if (pair.distance < witness.distance) witness = pair;
 }
 
+/// A witness that was not felt, and cannot be after the way since, need not be measured: from then
+/// on its distance is a bound from below.
+bool is_still_far(const Work& work, const Active& item, RegionState& state) noexcept {
+  const PairState& pair = work.pair_of(item);
+  const double way = way_of(pair, item.region);
+  const double since = way - state.active_at + kMotionSlack;
+  state.active_at = way;
+  const float lower = float_below(static_cast<double>(state.witness.distance) - since);
+  if (lower < work.delta_of(item) + kClosed) return false;
+  state.witness.distance = lower;
+  return true;
+}
+
 void measure_witnesses(Work& work) noexcept {
   PairBatch batch(work,
                   [&work](std::uint32_t i, const Witness& pair) { take_if_nearer(work, i, pair); });
   for (std::uint32_t i = 0; i < work.count; ++i) {
     const Active& item = work.active()[i];
-    Witness& witness = work.witness_of(item);
-    if (!witness.known()) continue;
+    RegionState& state = work.state_of(item);
+    if (is_still_far(work, item, state) || !state.witness.known()) continue;
+    Witness& witness = state.witness;
     const Witness at_last = witness;
     if (static_cast<double>(at_last.distance) <= last_motion(work.pair_of(item))) {
       work.memory.containment[item.pair].doubtful = true;
@@ -109,15 +127,44 @@ void measure_witnesses(Work& work) noexcept {
   batch.measure_all();
 }
 
+double way_since_proof(const Work& work, const Active& item) noexcept {
+  const PairState& pair = work.pair_of(item);
+  const image::Region& region = pair.image_a->regions[item.region];
+  return way_since(work.state_of(item).at, pair, static_cast<double>(region.reach));
+}
+
+/// Takes near pairs that are measured, those of a region in their order.
+class NearMeasured {
+ public:
+  explicit NearMeasured(Work& work) noexcept : work_(work) {}
+
+  void operator()(std::uint32_t index, const Witness& pair) noexcept {
+    take_if_nearer(work_, index, pair);
+    const Active& item = work_.active()[index];
+    RegionState& state = work_.state_of(item);
+    if (index != index_) k_ = 0;
+    index_ = index;
+    while (k_ < state.near.count && !state.near.pairs[k_].same_pair(pair)) ++k_;
+    if (k_ == state.near.count) return;
+    state.apart[k_] =
+        float_below(static_cast<double>(pair.distance) + way_since_proof(work_, item));
+  }
+
+ private:
+  Work& work_;
+  std::uint32_t index_ = image::kNone;  // of the region
+  std::uint32_t k_ = 0;                 // of its near pairs
+};
+
 /// Those of the near pairs that may be nearer than the witness now. Where the budget ends this,
 /// they count as not kept.
 void measure_near_pairs(Work& work) noexcept {
-  PairBatch batch(work,
-                  [&work](std::uint32_t i, const Witness& pair) { take_if_nearer(work, i, pair); });
+  PairBatch batch(work, NearMeasured(work));
   work.limit_to(kMostMeasured);
   for (std::uint32_t i = 0; i < work.count; ++i) {
     Active& item = work.active()[i];
     const RegionState& state = work.state_of(item);
+    const auto way = static_cast<float>(way_since_proof(work, item) + kMotionSlack);
     const float upper = work.upper_of(item);
     for (std::uint32_t k = 0; k < state.near.count; ++k) {
       const Witness& pair = state.near.pairs[k];
@@ -127,7 +174,7 @@ void measure_near_pairs(Work& work) noexcept {
         item.rest = lower - kRounding < item.rest ? lower - kRounding : item.rest;
         break;
       }
-      if (!pair.same_pair(state.witness)) batch.add(i, pair);
+      if (state.apart[k] - way < upper && !pair.same_pair(state.witness)) batch.add(i, pair);
     }
   }
   batch.measure_all();

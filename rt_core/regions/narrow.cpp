@@ -122,7 +122,8 @@ class Narrowing {
       const levels::PairState& pair = work_.pair_of(item);
       const auto moved = static_cast<float>(moved_since(kept.at, pair, item.region));
       const float within = kept.left.seen - moved - item.rest;
-      if (margin_of(pair) > 0 && within > kWorthTakingUp * item.width) return i;
+      const bool open = item.width > kClosed && margin_of(pair) > 0;
+      if (open && within > kWorthTakingUp * item.width) return i;
     }
     kept.drop();
     return image::kNone;
@@ -138,7 +139,7 @@ class Narrowing {
     for (std::uint32_t i = 0; i < work_.count; ++i) {
       open_m += work_.width_m(work_.active()[i]);
       count_in(work_.active()[i]);
-      queue.push(i);
+      if (work_.active()[i].width > kClosed) queue.push(i);
     }
     leave_for_report();
     const bool at_once = work_.demand.limited && pursuit_.searches >= kFewSearches &&
@@ -148,7 +149,6 @@ class Narrowing {
       Active& item = work_.active()[index];
       if (may_lag && step % kStepsPerLook == 0 && lags()) return;
       queue.pop();
-      if (item.width <= kClosed) break;
       open_m -= work_.width_m(item);
       const std::uint64_t known = felt_ + crossing_;
       count_out(item);
@@ -157,7 +157,7 @@ class Narrowing {
       if (felt_ + crossing_ > known) leave_for_report();
       open_m += work_.width_m(item);
       if (work_.truncated) return;
-      queue.push(index);
+      if (item.width > kClosed) queue.push(index);
     }
   }
 

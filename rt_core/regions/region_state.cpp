@@ -37,6 +37,9 @@ void prove(RegionState& state, const levels::PairState& pair, std::uint32_t regi
   state.rest = rest;
   state.lower = nearest < rest ? nearest : rest;
   state.at = stand_of(pair, region);
+  for (std::uint32_t k = 0; k < state.near.count; ++k) {
+    state.apart[k] = state.near.pairs[k].distance;
+  }
 }
 
 }  // namespace palpate::regions

@@ -29,9 +29,12 @@ struct RegionState {
   float rest = 0;
   float lower = 0;  ///< the least of `rest` and of the distances of `near`
   Stand at;
-  Witness witness;  ///< its distance is of the last tick it was measured in
-  float cost = 0;   ///< work units of the last search of all of it; 0: not known
+  Witness witness;       ///< its distance is of the last tick in which it was active
+  double active_at = 0;  ///< way_of() in that tick
+  float cost = 0;        ///< work units of the last search of all of it; 0: not known
   NearPairs near;
+  /// Of each of `near`: its distance when it was last measured, and the way since the proof then.
+  float apart[kNearPairs];
   Seeds seeds;  ///< other places of it that are followed (follow.hpp)
 };
 
@@ -42,13 +45,18 @@ struct RegionState {
 [[nodiscard]] double moved_since(const Stand& at, const levels::PairState& pair,
                                  std::uint32_t region) noexcept;
 
-/// The same by the odometers alone: the way and not the displacement, and all of the body. Reads
-/// nothing but the state, so that far regions cost next to nothing.
-[[nodiscard]] inline double way_since(const RegionState& state,
-                                      const levels::PairState& pair) noexcept {
-  constexpr double kMostReach = 1.51;  // of image::Region::reach, with room for rounding
-  return (pair.travel - state.at.travel) + (pair.turn - state.at.turn) * pair.scale_a * kMostReach +
-         kMotionSlack;
+/// The same by the odometers alone: the way and not the displacement. Unlike displacements, ways
+/// add up.
+/// @param reach  image::Region::reach, or more than that of any region
+[[nodiscard]] inline double way_since(const Stand& at, const levels::PairState& pair,
+                                      double reach) noexcept {
+  return (pair.travel - at.travel) + (pair.turn - at.turn) * pair.scale_a * reach + kMotionSlack;
+}
+
+/// How far any point of a region has gone against b in all ticks, at most.
+[[nodiscard]] inline double way_of(const levels::PairState& pair, std::uint32_t region) noexcept {
+  return pair.travel +
+         pair.turn * pair.scale_a * static_cast<double>(pair.image_a->regions[region].reach);
 }
 
 /// Proves at the present poses that the pairs which are not in state.near are at least `rest`

@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "rt_core/engine.hpp"
 #include "rt_core/regions/region_state.hpp"
 #include "rt_core/regions/sweep.hpp"
 #include "tests/support/brute_force.hpp"
@@ -307,6 +308,7 @@ TEST(RegionState, no_point_moves_farther_than_is_said) {
     regions::RegionState state;
     const std::uint32_t region = round % 7;
     regions::prove(state, at.pair, region, 1);
+    const double way_before = regions::way_of(at.pair, region);
     std::vector<Vec3d> before;
     const auto place = [&](const image::RegionTriangle& t) {
       const Vec3d p{double(t.corners[0]), double(t.corners[1]), double(t.corners[2])};
@@ -321,13 +323,72 @@ TEST(RegionState, no_point_moves_farther_than_is_said) {
       levels::move(at.pair, pose, {});
     }
     const double most = regions::moved_since(state.at, at.pair, region);
+    const double reach = double(at.pair.image_a->regions[region].reach);
+    const double way = regions::way_since(state.at, at.pair, reach);
+    EXPECT_NEAR(regions::way_of(at.pair, region) - way_before, way, 2 * regions::kMotionSlack);
     for (std::size_t i = 0; i < before.size(); ++i) {
       const auto& t = bodies().a.view.region_triangles[i];
       if (t.region != region) continue;
       ASSERT_LE(norm(place(t) - before[i]), most);
-      ASSERT_LE(norm(place(t) - before[i]), regions::way_since(state, at.pair));
+      ASSERT_LE(norm(place(t) - before[i]), way);
     }
   }
+}
+
+/// What is kept of active regions: how much of it was not measured in a tick.
+struct Unmeasured {
+  int witnesses = 0;
+  int near_pairs = 0;
+};
+
+void expect_kept_are_bounded(const BakedScene& s, std::uint64_t active, const Pose& pose,
+                             Unmeasured& out) {
+  const regions::QueryMemory& memory = s.engine->regions;
+  const levels::PairState& pair = memory.pairs[0];
+  const PlacedTriangles moved(bodies().a.mesh, pose);
+  const PlacedTriangles fixed(bodies().b.mesh, {});
+  const auto truth = [&](const regions::Witness& w) {
+    return distance_between(moved, bodies().a.view.region_triangles[w.a].source, fixed,
+                            bodies().b.view.region_triangles[w.b].source) /
+           pair.unit_m;
+  };
+  for (const regions::Active& item : memory.active.first(active)) {
+    const regions::RegionState& state = memory.states[item.state];
+    if (!state.witness.known()) continue;
+    const double distance = double(state.witness.distance);
+    const double exact = truth(state.witness);
+    ASSERT_LE(distance, exact + kRounding);
+    ASSERT_GE(distance, std::min(exact, pair.delta) - kRounding);
+    out.witnesses += distance < exact - 1e-4 * pair.delta ? 1 : 0;
+    const double reach = double(pair.image_a->regions[item.region].reach);
+    const double way = regions::way_since(state.at, pair, reach);
+    for (std::uint32_t k = 0; k < state.near.count; ++k) {
+      const double by_proof = double(state.near.pairs[k].distance - item.moved);
+      const double by_measure = double(state.apart[k]) - way;
+      ASSERT_LE(std::max(by_proof, by_measure), truth(state.near.pairs[k]) + kRounding);
+      out.near_pairs += by_measure > by_proof && by_measure >= distance ? 1 : 0;
+    }
+  }
+}
+
+TEST(RegionState, what_is_kept_is_measured_or_known_to_be_farther) {
+  constexpr double kDelta = 0.05;
+  std::mt19937 rng(7);
+  Unmeasured unmeasured;
+  for (const double speed : {0.02, 0.1}) {  // of delta
+    BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, exact_settings(kDelta));
+    Pose pose = kNear;
+    for (int i = 0; i < 60; ++i) {
+      pose.position_m += speed * kDelta * random_unit(rng);
+      pose.orientation = pose.orientation * turn(0.3 * speed * kDelta * random_unit(rng));
+      const Pose poses[2] = {pose, {}};
+      const Budget budget = i % 3 == 0 ? Budget{} : Budget{.units = 200};
+      const TickResult tick = tick_or_fail(*scene.engine, poses, budget);
+      expect_kept_are_bounded(scene, tick.front_nodes, pose, unmeasured);
+    }
+  }
+  EXPECT_GT(unmeasured.witnesses, 50);
+  EXPECT_GT(unmeasured.near_pairs, 50);
 }
 
 TEST(RegionSweep, bounds_all_regions_from_below_wherever_the_budget_ends_it) {
