@@ -19,6 +19,9 @@ constexpr std::uint32_t kMostRounds = 64;  ///< each passes over all active regi
 /// better by some two hundred regions that are known well than by twice as many that are not.
 constexpr std::uint32_t kTellingRounds = 12;
 constexpr std::uint32_t kMostRepeats = 8;
+/// Of the survey's units: once the first rounds have been seen, the rest does more in climbs and
+/// searches from there than in more looks.
+constexpr double kMostForRepeats = 0.8;
 
 class Survey {
  public:
@@ -67,7 +70,8 @@ class Survey {
     std::uint32_t i = 1;
     for (; i < repeated + rounds_ - telling; ++i) {
       const std::uint32_t round = i < repeated ? i % telling : i - repeated + telling;
-      if (!has_units_for(round)) break;
+      const bool repeats = i >= telling && i < repeated;
+      if (!has_units_for(round, repeats ? kMostForRepeats * share_ : share_)) break;
       see(round);
     }
     return i < telling ? i : i < repeated ? telling : i - repeated + telling;
@@ -82,7 +86,7 @@ class Survey {
   }
 
   std::uint32_t go_on(std::uint32_t round) noexcept {
-    while (round < rounds_ && has_units_for(round)) see(round++);
+    while (round < rounds_ && has_units_for(round, share_)) see(round++);
     return round;
   }
 
@@ -93,12 +97,12 @@ class Survey {
   }
 
   /// A round that is begun is ended, as far as that can be told: half of one is of one side.
-  bool has_units_for(std::uint32_t round) noexcept {
+  bool has_units_for(std::uint32_t round, double share) noexcept {
     if (!work_.pace.go_on()) return false;
     std::uint32_t regions = 0;
     for (std::uint32_t i = 0; i < work_.count; ++i) regions += round_of_[i] == round ? 1u : 0u;
     const auto used = static_cast<double>(work_.pace.used());
-    return used + regions * (looks_ + beside_) * kUnitsPerLook <= share_ * (used + affordable());
+    return used + regions * (looks_ + beside_) * kUnitsPerLook <= share * (used + affordable());
   }
 
   /// Work units that the tick has left, at the pace that it has had.
