@@ -162,7 +162,9 @@ struct Certificate {
   ContactStatus contact = ContactStatus::undecided;
   double error_bound_m = 0;  ///< the true least distance is within this of the reported one; where
                              ///< no contact is reported, of delta. It counts what detail was left
-                             ///< out before baking (Header::source_deviation_rel)
+                             ///< out before baking (Header::source_deviation_rel). Regions engine:
+                             ///< overlap counts as 0; where the budget ended a tick nothing is
+                             ///< said of how deep it is
   double s_worst =
       0;  ///< largest weighted surface deviation left unrefined, relative to the radius
   /// Regions engine: the sizes of the regions' penalty forces, summed, are within this of the true

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What levels of detail and budgets do to the force from tick to tick (docs/STABILITY.md).
 //
-//   bench_steadiness [TICKS]        default: 640 ticks of 1 ms
+//   bench_steadiness [TICKS [N]]    default: 640 ticks of 1 ms
+//
+// With N, `regions` alone on jaws ground, under N budgets from 200 to 2,600 units.
 //
 // A row (CSV) for each motion, speed, setting and budget: the largest change of force between two
 // ticks over that of the same engine's exact query on the same motion, of the engine as it is,
@@ -44,12 +46,13 @@ struct Setting {
 const std::vector<std::uint64_t> kOfLevels = {kUnlimited, 200, 60};
 const std::vector<std::uint64_t> kOfRegions = {2500, 1000, 500, 200};
 
-const Setting kSettings[] = {{"s0 = 0.005", {.s0 = 0.005}, kOfLevels},
-                             {"s0 = 0.015", {.s0 = 0.015}, kOfLevels},
-                             {"s0 = 0.05", {.s0 = 0.05}, kOfLevels},
-                             {"kappa = 0.1", {.s0 = 1e3, .kappa = 0.1}, kOfLevels},
-                             {"s0 = 0.05, dives", {.s0 = 0.05, .contact_dive = true}, kOfLevels},
-                             {"regions", {.engine = EngineKind::regions}, kOfRegions}};
+const std::vector<Setting> kSettings = {
+    {"s0 = 0.005", {.s0 = 0.005}, kOfLevels},
+    {"s0 = 0.015", {.s0 = 0.015}, kOfLevels},
+    {"s0 = 0.05", {.s0 = 0.05}, kOfLevels},
+    {"kappa = 0.1", {.s0 = 1e3, .kappa = 0.1}, kOfLevels},
+    {"s0 = 0.05, dives", {.s0 = 0.05, .contact_dive = true}, kOfLevels},
+    {"regions", {.engine = EngineKind::regions}, kOfRegions}};
 
 struct Scene {
   const char* name;
@@ -94,8 +97,19 @@ void print_column(const std::vector<Vec3d>& found, const std::vector<Vec3d>& exa
               nrmse(found, exact, kStart));
 }
 
-void measure(const Scene& scene, double speed_m_per_s, const std::vector<Pose>& poses) {
-  for (const Setting& setting : kSettings) {
+std::vector<std::uint64_t> budgets_of_regions(int count) {
+  constexpr int kLeast = 200;
+  constexpr int kMost = 2600;
+  std::vector<std::uint64_t> out;
+  for (int i = 0; i < count; ++i) {
+    out.push_back(static_cast<std::uint64_t>(kLeast + i * (kMost - kLeast) / (count - 1)));
+  }
+  return out;
+}
+
+void measure(const Scene& scene, double speed_m_per_s, const std::vector<Pose>& poses,
+             const std::vector<Setting>& chosen) {
+  for (const Setting& setting : chosen) {
     const std::vector<Vec3d> exact = forces(
         scene, poses, {.engine = setting.settings.engine, .exact = true}, kUnlimited, kNotSteadied);
     for (const std::uint64_t units : setting.budgets) {
@@ -124,14 +138,14 @@ Pose ground(double speed_m_per_s, int tick) {
           {w, 0, 0, w * half_turn}};
 }
 
-void measure_ground(int ticks) {
+void measure_ground(int ticks, const std::vector<Setting>& settings) {
   constexpr double kDelta_m = 0.0005;
   const Body upper("jaw_upper", 0.02, bake::ForEngine::both, 6000);
   const Body lower("jaw_lower", 0.02, bake::ForEngine::both, 6000);
   for (const double speed : {0.1, 0.3}) {
     std::vector<Pose> poses;
     for (int i = 0; i < ticks; ++i) poses.push_back(ground(speed, i));
-    measure({"ground", upper, lower, kDelta_m}, speed, poses);
+    measure({"ground", upper, lower, kDelta_m}, speed, poses, settings);
   }
 }
 
@@ -145,8 +159,8 @@ void measure_rolled(int ticks) {
   const std::vector<Pose> slow = motion(kScene, a, b, delta_m, kFaster * ticks);
   std::vector<Pose> fast;
   for (std::size_t i = 0; i < slow.size(); i += kFaster) fast.push_back(slow[i]);
-  measure({"rolled", a, b, delta_m}, 0.1, {slow.begin(), slow.begin() + ticks});
-  measure({"rolled", a, b, delta_m}, 0.3, fast);
+  measure({"rolled", a, b, delta_m}, 0.1, {slow.begin(), slow.begin() + ticks}, kSettings);
+  measure({"rolled", a, b, delta_m}, 0.3, fast, kSettings);
 }
 
 }  // namespace
@@ -159,7 +173,14 @@ int main(int argc, char** argv) {
     std::printf(",%s_step,%s_large,%s_nrmse", column, column, column);
   }
   std::printf("\n");
-  palpate::bench::measure_ground(ticks);
+  if (argc > 2) {
+    const std::vector<std::uint64_t> budgets =
+        palpate::bench::budgets_of_regions(std::max(2, std::atoi(argv[2])));
+    const palpate::Settings regions{.engine = palpate::EngineKind::regions};
+    palpate::bench::measure_ground(ticks, {{"regions", regions, budgets}});
+    return 0;
+  }
+  palpate::bench::measure_ground(ticks, palpate::bench::kSettings);
   palpate::bench::measure_rolled(ticks);
   return 0;
 }
