@@ -21,7 +21,7 @@ constexpr std::uint32_t kTellingRounds = 12;
 constexpr std::uint32_t kMostRepeats = 8;
 /// Of the survey's units: once the first rounds have been seen, the rest does more in climbs and
 /// searches from there than in more looks.
-constexpr double kMostForRepeats = 0.8;
+constexpr double kMostForRepeats = 0.9;
 
 class Survey {
  public:
