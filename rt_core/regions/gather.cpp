@@ -113,9 +113,11 @@ void measure_witnesses(Work& work) noexcept {
   PairBatch batch(work,
                   [&work](std::uint32_t i, const Witness& pair) { take_if_nearer(work, i, pair); });
   for (std::uint32_t i = 0; i < work.count; ++i) {
-    const Active& item = work.active()[i];
+    Active& item = work.active()[i];
     RegionState& state = work.state_of(item);
-    if (is_still_far(work, item, state) || !state.witness.known()) continue;
+    // What lies beside what is certainly not felt is not looked at either.
+    item.climbed = is_still_far(work, item, state);
+    if (item.climbed || !state.witness.known()) continue;
     Witness& witness = state.witness;
     const Witness at_last = witness;
     if (static_cast<double>(at_last.distance) <= last_motion(work.pair_of(item))) {

@@ -46,7 +46,7 @@ struct Active {
   std::uint32_t state = 0;
   std::uint32_t region = 0;
   std::uint32_t pair = 0;
-  bool climbed = false;  ///< the witness has been moved to the nearest of its neighbours
+  bool climbed = false;  ///< no climb: done, or the witness is certainly not felt
 };
 
 /// Room for the ways out of pieces that cross, over all regions; what is beyond is felt whole.
