@@ -104,7 +104,7 @@ bool is_still_far(const Work& work, const Active& item, RegionState& state) noex
   const double since = way - state.active_at + kMotionSlack;
   state.active_at = way;
   const float lower = float_below(static_cast<double>(state.witness.distance) - since);
-  if (lower < work.delta_of(item) + kClosed) return false;
+  if (!state.witness.known() || lower < work.delta_of(item) + kClosed) return false;
   state.witness.distance = lower;
   return true;
 }

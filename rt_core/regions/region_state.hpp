@@ -29,7 +29,9 @@ struct RegionState {
   float rest = 0;
   float lower = 0;  ///< the least of `rest` and of the distances of `near`
   Stand at;
-  Witness witness;       ///< its distance is of the last tick in which it was active
+  /// Its distance is of the last tick in which the region was active: of a contact exact, else
+  /// perhaps a bound from below that is no less than delta.
+  Witness witness;
   double active_at = 0;  ///< way_of() in that tick
   float cost = 0;        ///< work units of the last search of all of it; 0: not known
   NearPairs near;
