@@ -24,7 +24,7 @@ struct SteadyRates {
 /// as far as it is larger than the doubts of this tick and of the last; and so is what the linear
 /// model says (linear_contact.hpp), less what a slope of kSlope makes of the motion, which a
 /// simplified surface may have where the original has none. How deep bodies overlap where a budget
-/// ended the query, the certificate does not tell: then no more is certain than kDeepShare of what
+/// ended the query, the certificate need not tell: then no more is certain than kDeepShare of what
 /// the stiffness makes of the motion, and what the model says. So an exact answer, which leaves
 /// nothing open, is believed at once and whole; simplified contacts, whose slopes and corners are
 /// not those of the original, and those that a budget finds late, come in as the force changes
