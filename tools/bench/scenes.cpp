@@ -105,15 +105,17 @@ Body::Body(const char* model, double delta_rel, bake::ForEngine engine, std::siz
 }
 
 Bench::Bench(const Body& a, const Body& b, const Settings& settings)
-    : views_{a.view, b.view}, settings_(settings) {
-  bytes_ = required_bytes(scene(), limits_of(settings_.engine, views_[0]), settings_.engine);
+    : Bench(a, b, settings, limits_of(settings.engine, a.view)) {}
+
+Bench::Bench(const Body& a, const Body& b, const Settings& settings, const Limits& limits)
+    : views_{a.view, b.view}, settings_(settings), limits_(limits) {
+  bytes_ = required_bytes(scene(), limits_, settings_.engine);
   memory_.reset(new (std::align_val_t(64)) std::byte[bytes_]);
   forget();
 }
 
 void Bench::forget() {
-  const Limits limits = limits_of(settings_.engine, views_[0]);
-  if (create(scene(), settings_, limits, {memory_.get(), bytes_}, engine_) != Status::ok) {
+  if (create(scene(), settings_, limits_, {memory_.get(), bytes_}, engine_) != Status::ok) {
     std::abort();
   }
   if (kernels_ != nullptr) engine_->regions.kernels = kernels_;
@@ -130,6 +132,14 @@ TickResult Bench::tick_at(const Pose& pose, const Budget& budget) {
   if (tick(*engine_, poses, budget, result) != Status::ok) std::abort();
   if (result.certificate.truncated_by_memory) std::abort();
   return result;
+}
+
+void Bench::save(std::vector<std::byte>& state) const {
+  state.assign(memory_.get(), memory_.get() + bytes_);
+}
+
+void Bench::restore(const std::vector<std::byte>& state) {
+  std::copy(state.begin(), state.end(), memory_.get());
 }
 
 std::vector<Pose> motion(const SceneName& scene, const Body& a, const Body& b, double delta_m,

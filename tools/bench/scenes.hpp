@@ -2,6 +2,7 @@
 // Two detailed objects and a motion of one about the other, for the benchmarks of both engines.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <new>
@@ -36,13 +37,18 @@ struct Body {
 /// An engine over two bodies that can forget all it knows.
 class Bench {
  public:
+  /// With room for more than any scene needs.
   Bench(const Body& a, const Body& b, const Settings& settings);
+  Bench(const Body& a, const Body& b, const Settings& settings, const Limits& limits);
   void forget();
   /// Regions engine: not the widest instructions of this processor.
   void use(const regions::Kernels& kernels);
   /// b stays at its origin.
   TickResult tick_at(const Pose& pose, const Budget& budget = {});
   [[nodiscard]] const Settings& settings() const { return settings_; }
+  /// All that the engine knows from earlier ticks.
+  void save(std::vector<std::byte>& state) const;
+  void restore(const std::vector<std::byte>& state);
 
  private:
   struct Free {
@@ -53,6 +59,7 @@ class Bench {
   std::vector<ImageView> views_;
   std::vector<BodyPair> pairs_{{0, 1}};
   Settings settings_;
+  Limits limits_;
   const regions::Kernels* kernels_ = nullptr;  ///< null: the widest
   std::size_t bytes_ = 0;
   std::unique_ptr<std::byte[], Free> memory_;
