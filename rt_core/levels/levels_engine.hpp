@@ -34,6 +34,8 @@ struct Touch {
   std::uint32_t b = kNone;
   Vec3f point_a{};  ///< in the coordinates of a
   Vec3f point_b{};  ///< in those of b
+  Vec3f normal{};   ///< where its queries begin; in the coordinates of a
+  convex::Cache own;
 };
 /// Remembered of a pair of bodies.
 inline constexpr std::uint32_t kTouchBits = 8;

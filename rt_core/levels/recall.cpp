@@ -94,18 +94,22 @@ bool is_near(const PairState& pair, const Touch& touch) noexcept {
          pair.delta;
 }
 
-/// What two pieces give now. One query, and those of open patches.
-LeafContact touch_again(Work& work, const Touch& touch, const Node& holder) noexcept {
+/// What two pieces give now. One query, which starts from what the last one found, and those of
+/// open patches.
+LeafContact touch_again(Work& work, Touch& touch, const Node& holder) noexcept {
   const PairState& pair = work.pair_of(holder);
   Node node;
   node.pair = holder.pair;
   node.piece_a = touch.a;
   node.piece_b = touch.b;
-  node.normal = holder.normal;
+  node.normal = touch.normal;
+  node.own = touch.own;
   begin(pair, node, -kInfinity);
   const image::Piece& a = piece_a(pair, node);
   const image::Piece& b = piece_b(pair, node);
   const convex::Distance d = work.probe.own(pair, node);
+  touch.own = node.own;
+  if (!convex::overlaps(d)) touch.normal = vec_cast<float>(d.normal);
   const bool simplified = is_simplified(a) || is_simplified(b);
   if (d.lower_bound >= pair.delta || (simplified && convex::overlaps(d))) return {};
   const LeafContact contact = leaf_contact(pair, a, b, d, node.own, pair.delta,
@@ -115,7 +119,7 @@ LeafContact touch_again(Work& work, const Touch& touch, const Node& holder) noex
 }
 
 /// @return whether the front node that holds the pieces keeps a contact
-bool keep_if_touching(Work& work, const Touch& touch, const PairState& pair) noexcept {
+bool keep_if_touching(Work& work, Touch& touch, const PairState& pair) noexcept {
   const std::uint32_t index = holder_of(work.tree, pair, touch);
   if (index == kNone || !work.is_near(work.tree[index])) return false;
   Node& node = work.tree[index];
@@ -135,12 +139,12 @@ void remember(Work& work, const Node& node) noexcept {
   constexpr std::uint32_t kGolden = 0x9e3779b1u;  // spreads numbers that follow each other
   const std::uint32_t part = part_of(work.pair_of(node), node.piece_a);
   touches_of(work, node.pair)[(part * kGolden) >> (32 - kTouchBits)] = {
-      node.piece_a, node.piece_b, node.witness_a, node.witness_b};
+      node.piece_a, node.piece_b, node.witness_a, node.witness_b, node.normal, node.own};
 }
 
 bool recall(Work& work, std::size_t index, bool enough) noexcept {
   const PairState& pair = work.memory.pairs[index];
-  const std::span<const Touch> known = touches_of(work, index);
+  const std::span<Touch> known = touches_of(work, index);
   bool touches = keeps_contact(work, index);
   if (touches && enough) return true;
   double reach = kInfinity;
@@ -154,7 +158,7 @@ bool recall(Work& work, std::size_t index, bool enough) noexcept {
   const std::uint64_t share = work.meter.queries_left() / kShare;
   const std::uint64_t end = work.probe.queries() + (share < kMostRecalled ? share : kMostRecalled);
   while (!work.waiting.empty() && work.probe.queries() < end && !work.out_of_budget()) {
-    const Touch& touch = known[work.waiting.top().node];
+    Touch& touch = known[work.waiting.top().node];
     work.waiting.pop();
     if (keep_if_touching(work, touch, pair)) touches = true;
   }
