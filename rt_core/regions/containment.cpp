@@ -196,7 +196,8 @@ void activate(Work& work, std::uint32_t pair, const Witness& witness) noexcept {
     if (item.state == state) return;
   }
   const auto rest = static_cast<float>(memory.pairs[pair].delta);
-  memory.active[work.count++] = {.rest = rest, .state = state, .region = region, .pair = pair};
+  memory.active[work.count++] = {
+      .rest = rest, .way = {}, .state = state, .region = region, .pair = pair};
 }
 
 /// The nearest of all pairs of triangles, or of those that the budget does for.

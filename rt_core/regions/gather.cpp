@@ -3,8 +3,8 @@
 
 #include <limits>
 
+#include "rt_core/regions/kept.hpp"
 #include "rt_core/regions/motion.hpp"
-#include "rt_core/regions/pair_batch.hpp"
 
 namespace palpate::regions {
 namespace {
@@ -21,16 +21,9 @@ constexpr double kMostSwept = 0.04;
 constexpr double kLeastSwept = 128;
 constexpr double kSweptPerRegion = 0.25;
 
-/// Under a budget, at most this share of it goes to pairs that were kept: where there are many,
-/// none would be left to search with, and so it would stay.
-constexpr double kMostMeasured = 0.5;
-
 /// Of image::Region::reach, with room for rounding. Odometers alone read nothing but the state, so
 /// that far regions cost next to nothing.
 constexpr double kMostReach = 1.51;
-
-/// Rounded towards minus infinity far enough for float.
-float float_below(double v) noexcept { return static_cast<float>(v - 1e-7 * (v < 0 ? -v : v)); }
 
 void limit_sweep(Work& work, std::size_t regions) noexcept {
   const double units = work.units_of_tick();
@@ -85,15 +78,11 @@ void gather_regions(Work& work, std::uint32_t index, bool swept) noexcept {
     }
     memory.active[work.count++] = {.rest = float_below(static_cast<double>(state.rest) - moved_by),
                                    .moved = static_cast<float>(moved_by),
+                                   .way = {},
                                    .state = first + i,
                                    .region = i,
                                    .pair = index};
   }
-}
-
-void take_if_nearer(Work& work, std::uint32_t index, const Witness& pair) noexcept {
-  Witness& witness = work.witness_of(work.active()[index]);
-  if (pair.distance < witness.distance) witness = pair;
 }
 
 /// A witness that was not felt, and cannot be after the way since, need not be measured: from then
@@ -109,78 +98,60 @@ bool is_still_far(const Work& work, const Active& item, RegionState& state) noex
   return true;
 }
 
+/// Witnesses at the present poses, sixteen at a time, and which way they lie.
+class WitnessBatch {
+ public:
+  explicit WitnessBatch(Work& work) noexcept : work_(work) {}
+
+  void add(std::uint32_t index) noexcept {
+    const std::span<const Active> active = work_.active();
+    const bool of_others = count_ > 0 && active[of_[0]].pair != active[index].pair;
+    if (count_ == kBatch || of_others) measure_all();
+    const Witness& witness = work_.witness_of(active[index]);
+    SearchScratch& scratch = *work_.memory.search;
+    scratch.batch_a[count_] = witness.a;
+    scratch.batch_b[count_] = witness.b;
+    of_[count_++] = index;
+  }
+
+  void measure_all() noexcept {
+    if (count_ == 0) return;
+    const PairFrame& frame = work_.frame_of(work_.active()[of_[0]]);
+    float distances[kBatch];
+    float apart[3][kBatch];
+    measure_ways(*work_.memory.kernels, frame, *work_.memory.search, work_.pace, count_, distances,
+                 apart);
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      Active& item = work_.active()[of_[i]];
+      Witness& witness = work_.witness_of(item);
+      witness.distance = distances[i];
+      const Vec3f way = {apart[0][i], apart[1][i], apart[2][i]};
+      const float length = sqrt_of(squared_norm(way));
+      if (length > 0 && !witness.crosses()) item.way = {(1 / length) * way, witness.a, witness.b};
+    }
+    count_ = 0;
+  }
+
+ private:
+  Work& work_;
+  std::uint32_t of_[kBatch];
+  std::uint32_t count_ = 0;
+};
+
 void measure_witnesses(Work& work) noexcept {
-  PairBatch batch(work,
-                  [&work](std::uint32_t i, const Witness& pair) { take_if_nearer(work, i, pair); });
+  WitnessBatch batch(work);
   for (std::uint32_t i = 0; i < work.count; ++i) {
     Active& item = work.active()[i];
     RegionState& state = work.state_of(item);
     // What lies beside what is certainly not felt is not looked at either.
     item.climbed = is_still_far(work, item, state);
     if (item.climbed || !state.witness.known()) continue;
-    Witness& witness = state.witness;
-    const Witness at_last = witness;
-    if (static_cast<double>(at_last.distance) <= last_motion(work.pair_of(item))) {
+    if (static_cast<double>(state.witness.distance) <= last_motion(work.pair_of(item))) {
       work.memory.containment[item.pair].doubtful = true;
     }
-    witness.distance = kFarthest;
-    batch.add(i, at_last);
+    batch.add(i);
   }
   batch.measure_all();
-}
-
-double way_since_proof(const Work& work, const Active& item) noexcept {
-  const PairState& pair = work.pair_of(item);
-  const image::Region& region = pair.image_a->regions[item.region];
-  return way_since(work.state_of(item).at, pair, static_cast<double>(region.reach));
-}
-
-/// Takes near pairs that are measured, those of a region in their order.
-class NearMeasured {
- public:
-  explicit NearMeasured(Work& work) noexcept : work_(work) {}
-
-  void operator()(std::uint32_t index, const Witness& pair) noexcept {
-    take_if_nearer(work_, index, pair);
-    const Active& item = work_.active()[index];
-    RegionState& state = work_.state_of(item);
-    if (index != index_) k_ = 0;
-    index_ = index;
-    while (k_ < state.near.count && !state.near.pairs[k_].same_pair(pair)) ++k_;
-    if (k_ == state.near.count) return;
-    state.apart[k_] =
-        float_below(static_cast<double>(pair.distance) + way_since_proof(work_, item));
-  }
-
- private:
-  Work& work_;
-  std::uint32_t index_ = image::kNone;  // of the region
-  std::uint32_t k_ = 0;                 // of its near pairs
-};
-
-/// Those of the near pairs that may be nearer than the witness now. Where the budget ends this,
-/// they count as not kept.
-void measure_near_pairs(Work& work) noexcept {
-  PairBatch batch(work, NearMeasured(work));
-  work.limit_to(kMostMeasured);
-  for (std::uint32_t i = 0; i < work.count; ++i) {
-    Active& item = work.active()[i];
-    const RegionState& state = work.state_of(item);
-    const auto way = static_cast<float>(way_since_proof(work, item) + kMotionSlack);
-    const float upper = work.upper_of(item);
-    for (std::uint32_t k = 0; k < state.near.count; ++k) {
-      const Witness& pair = state.near.pairs[k];
-      const float lower = pair.distance - item.moved;
-      if (lower >= upper) break;
-      if (!work.pace.go_on()) {
-        item.rest = lower - kRounding < item.rest ? lower - kRounding : item.rest;
-        break;
-      }
-      if (state.apart[k] - way < upper && !pair.same_pair(state.witness)) batch.add(i, pair);
-    }
-  }
-  batch.measure_all();
-  work.pace.no_limit();
 }
 
 }  // namespace
@@ -191,7 +162,7 @@ void gather(Work& work) noexcept {
     gather_regions(work, i, sweep_if_lost(work, i));
   }
   measure_witnesses(work);
-  measure_near_pairs(work);
+  measure_kept(work);
   thin_out(work);
   work.widen_all();
 }

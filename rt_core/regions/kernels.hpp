@@ -84,6 +84,21 @@ struct Kernels {
                                       const Transform& a_to_b, KernelScratch& scratch,
                                       float (&out_squared)[kBatch]) noexcept;
 
+  /// The same, and the way from b's closest point to a's, in the coordinates of b's image; of
+  /// crossing pairs any. The distances have the bits of triangle_distances().
+  std::uint32_t (*triangle_ways)(const image::RegionTriangle* const (&a)[kBatch],
+                                 const image::RegionTriangle* const (&b)[kBatch],
+                                 const Transform& a_to_b, KernelScratch& scratch,
+                                 float (&out_squared)[kBatch],
+                                 float (&out_apart)[3][kBatch]) noexcept;
+
+  /// How far kBatch pairs of triangles are apart along a direction, at which every a lies beyond b;
+  /// below 0 where they overlap along it. In the unit of b's image, as the direction of length 1,
+  /// which is in its coordinates. No pair is nearer than that.
+  void (*separations)(const image::RegionTriangle* const (&a)[kBatch],
+                      const image::RegionTriangle* const (&b)[kBatch], const Transform& a_to_b,
+                      Vec3f along, KernelScratch& scratch, float (&out)[kBatch]) noexcept;
+
   /// Closest points of the kBatch pairs in scratch.lanes; where a pair crosses, of its edges and
   /// corners.
   void (*witnesses)(KernelScratch& scratch, WitnessLanes& out) noexcept;

@@ -10,7 +10,8 @@
 namespace palpate::regions {
 
 const Kernels* kernels_avx512() noexcept {
-  static constexpr Kernels kTable = {"avx512", test_boxes, triangle_distances, witnesses};
+  static constexpr Kernels kTable = {"avx512",      test_boxes,  triangle_distances,
+                                     triangle_ways, separations, witnesses};
   return &kTable;
 }
 

@@ -7,7 +7,8 @@
 namespace palpate::regions {
 
 const Kernels* kernels_scalar() noexcept {
-  static constexpr Kernels kTable = {"scalar", test_boxes, triangle_distances, witnesses};
+  static constexpr Kernels kTable = {"scalar",      test_boxes,  triangle_distances,
+                                     triangle_ways, separations, witnesses};
   return &kTable;
 }
 

@@ -14,6 +14,11 @@ namespace palpate::regions {
 /// larger radius: every bound below is a bound once this is subtracted.
 inline constexpr float kRounding = 1e-6f;
 
+/// Rounded towards minus infinity far enough for float.
+inline float float_below(double v) noexcept {
+  return static_cast<float>(v - 1e-7 * (v < 0 ? -v : v));
+}
+
 /// Lengths are in units of the larger radius (levels::PairState) unless a name says image.
 struct PairFrame {
   const ImageView* a = nullptr;

@@ -36,6 +36,16 @@ constexpr std::uint64_t tail_contacts(std::uint64_t contacts, std::uint64_t cros
   return contacts + kMore * crossings;
 }
 
+/// Which way a pair of triangles is apart.
+struct Way {
+  Vec3f along{};  ///< from b's closest point to a's, of length 1, in the coordinates of b's image
+  std::uint32_t a = image::kNone;  ///< not known
+  std::uint32_t b = image::kNone;
+  [[nodiscard]] bool is_of(const Witness& w) const noexcept {
+    return w.known() && a == w.a && b == w.b;
+  }
+};
+
 /// A region that may be nearer than delta in this tick.
 struct Active {
   float rest = 0;     ///< at the present poses
@@ -43,6 +53,7 @@ struct Active {
   float width = 0;    ///< min(witness, delta) - rest: what its force may still change by
   float weight = 1;   ///< its part of a tolerance, of which the mean is 1
   float urgency = 0;  ///< the larger, the sooner it is looked at
+  Way way;            ///< of the witness as this tick has found it
   std::uint32_t state = 0;
   std::uint32_t region = 0;
   std::uint32_t pair = 0;

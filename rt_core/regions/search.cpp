@@ -26,17 +26,24 @@ float lessened_squared(float squared, float moved) noexcept {
   return left * left;
 }
 
+/// The pairs of a batch.
+struct Batch {
+  Batch(const PairFrame& frame, const SearchScratch& scratch) noexcept {
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      a[i] = &frame.a->region_triangles[scratch.batch_a[i]];
+      b[i] = &frame.b->region_triangles[scratch.batch_b[i]];
+    }
+  }
+  const RegionTriangle* a[kBatch];
+  const RegionTriangle* b[kBatch];
+};
+
 /// Distances of sixteen pairs at once, in units.
 std::uint32_t evaluate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
                        float (&out_squared)[kBatch]) noexcept {
-  const RegionTriangle* a[kBatch];
-  const RegionTriangle* b[kBatch];
-  for (std::uint32_t i = 0; i < kBatch; ++i) {
-    a[i] = &frame.a->region_triangles[scratch.batch_a[i]];
-    b[i] = &frame.b->region_triangles[scratch.batch_b[i]];
-  }
+  const Batch pairs(frame, scratch);
   const std::uint32_t crossing =
-      kernels.triangle_distances(a, b, frame.a_to_b, scratch.kernel, out_squared);
+      kernels.triangle_distances(pairs.a, pairs.b, frame.a_to_b, scratch.kernel, out_squared);
   for (float& squared : out_squared) squared *= frame.scale2_b;
   return crossing;
 }
@@ -317,6 +324,15 @@ class Search {
   CrossingList* crossings_ = nullptr;  // null: distances are asked for
 };
 
+/// The lanes that are left repeat the first.
+void fill_up(SearchScratch& scratch, std::uint32_t count) noexcept {
+  PALPATE_ASSERT(count > 0 && count <= kBatch);
+  for (std::uint32_t i = count; i < kBatch; ++i) {
+    scratch.batch_a[i] = scratch.batch_a[0];
+    scratch.batch_b[i] = scratch.batch_b[0];
+  }
+}
+
 std::uint32_t neighbour(const ImageView& image, std::uint32_t triangle, std::uint32_t i) noexcept {
   const std::uint32_t n = image.region_triangles[triangle].neighbours[i];
   return n == image::kNone ? triangle : n;
@@ -335,6 +351,15 @@ void around_a(const ImageView& image, std::uint32_t t, std::uint32_t (&out)[4]) 
 void around_b(const ImageView& image, std::uint32_t t, std::uint32_t (&out)[4]) noexcept {
   out[0] = t;
   for (std::uint32_t i = 0; i < 3; ++i) out[i + 1] = neighbour(image, t, i);
+}
+
+/// Every triangle of a about a witness's with every one of b, itself first.
+void around(const PairFrame& frame, const Witness& witness, Witness (&out)[kBatch]) noexcept {
+  std::uint32_t of_a[4];
+  std::uint32_t of_b[4];
+  around_a(*frame.a, witness.a, of_a);
+  around_b(*frame.b, witness.b, of_b);
+  for (std::uint32_t i = 0; i < kBatch; ++i) out[i] = {of_a[i / 4], of_b[i % 4]};
 }
 
 /// The nearest of a node's children, and of those that overlap the one whose centre is.
@@ -386,26 +411,55 @@ Witness dive(const Kernels& kernels, const PairFrame& frame, Pace& pace, std::ui
 
 void measure(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
              std::uint32_t count, float (&out_distances)[kBatch]) noexcept {
-  PALPATE_ASSERT(count > 0 && count <= kBatch);
-  for (std::uint32_t i = count; i < kBatch; ++i) {
-    scratch.batch_a[i] = scratch.batch_a[0];
-    scratch.batch_b[i] = scratch.batch_b[0];
-  }
+  fill_up(scratch, count);
   pace.charge(kBatchUnits);
   evaluate(kernels, frame, scratch, out_distances);
   for (float& d : out_distances) d = sqrt_of(d);
 }
 
+void measure_ways(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
+                  Pace& pace, std::uint32_t count, float (&out_distances)[kBatch],
+                  float (&out_apart)[3][kBatch]) noexcept {
+  fill_up(scratch, count);
+  pace.charge(kBatchUnits);
+  const Batch pairs(frame, scratch);
+  kernels.triangle_ways(pairs.a, pairs.b, frame.a_to_b, scratch.kernel, out_distances, out_apart);
+  for (float& d : out_distances) d = sqrt_of(frame.scale2_b * d);
+}
+
+void separate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+              const Witness (&pairs)[kBatch], Vec3f along, float (&out)[kBatch]) noexcept {
+  const RegionTriangle* a[kBatch];
+  const RegionTriangle* b[kBatch];
+  for (std::uint32_t i = 0; i < kBatch; ++i) {
+    a[i] = &frame.a->region_triangles[pairs[i].a];
+    b[i] = &frame.b->region_triangles[pairs[i].b];
+  }
+  pace.charge(kSeparationUnits);
+  kernels.separations(a, b, frame.a_to_b, along, scratch.kernel, out);
+  const float scale_b = sqrt_of(frame.scale2_b);
+  for (float& apart : out) apart *= scale_b;
+}
+
+bool is_lowest(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+               const Witness& witness, Vec3f along) noexcept {
+  Witness pairs[kBatch];
+  around(frame, witness, pairs);
+  float apart[kBatch];
+  separate(kernels, frame, scratch, pace, pairs, along, apart);
+  bool lowest = true;
+  for (const float other : apart) lowest &= other > witness.distance - kAsNear;
+  return lowest;
+}
+
 void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
            Witness& witness) noexcept {
   for (std::uint32_t step = 0; step < kMaxClimb && pace.go_on(); ++step) {
-    std::uint32_t of_a[4];
-    std::uint32_t of_b[4];
-    around_a(*frame.a, witness.a, of_a);
-    around_b(*frame.b, witness.b, of_b);
+    Witness pairs[kBatch];
+    around(frame, witness, pairs);
     for (std::uint32_t i = 0; i < kBatch; ++i) {
-      scratch.batch_a[i] = of_a[i / 4];
-      scratch.batch_b[i] = of_b[i % 4];
+      scratch.batch_a[i] = pairs[i].a;
+      scratch.batch_b[i] = pairs[i].b;
     }
     pace.charge(kBatchUnits);
     float squared[kBatch];

@@ -15,8 +15,8 @@ namespace palpate::regions {
 
 /// Work units of one batch of triangle pairs; one box against the boxes of a node is one unit.
 inline constexpr std::uint64_t kBatchUnits = 8;
-/// The clock is read after this many units.
-inline constexpr std::uint64_t kUnitsPerReading = 32;
+/// The clock is read after this many units: with what is done in one go, 40 at most.
+inline constexpr std::uint64_t kUnitsPerReading = 30;
 
 /// What a search knows of a region. `best` is an upper bound where known.
 struct Bounds {
@@ -104,11 +104,31 @@ class Pace {
 void measure(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
              std::uint32_t count, float (&out_distances)[kBatch]) noexcept;
 
+/// The same, and the way from b's closest point to a's, in the coordinates of b's image.
+void measure_ways(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
+                  Pace& pace, std::uint32_t count, float (&out_distances)[kBatch],
+                  float (&out_apart)[3][kBatch]) noexcept;
+
+/// How far sixteen pairs are apart, in units, along a direction of length 1 in the coordinates of
+/// b's image: none is nearer. kSeparationUnits.
+void separate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+              const Witness (&pairs)[kBatch], Vec3f along, float (&out)[kBatch]) noexcept;
+inline constexpr std::uint64_t kSeparationUnits = 2;
+
 /// Goes from a witness to a neighbour of either triangle, or of both, while that is nearer; within
 /// the witness's region of a. At most kMaxClimb batches.
 inline constexpr std::uint32_t kMaxClimb = 3;
 void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
            Witness& witness) noexcept;
+
+/// Where a climb would end where it begins, as far as one look along the witness's way tells: no
+/// neighbour is nearer by more than kAsNear. kSeparationUnits.
+/// @param along  from its point on b to that on a, of length 1, in the coordinates of b's image
+bool is_lowest(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+               const Witness& witness, Vec3f along) noexcept;
+/// Pairs that are nearer by less than this are as near: what triangles that share the witness's
+/// corner seem to be nearer by rounding.
+inline constexpr float kAsNear = 0.25f * kRounding;
 
 /// A pair of triangles that may be near, in a part of a region: the box of one of its leaves, and
 /// down the other tree from nearest child to nearest child. Its distance is not measured.

@@ -184,6 +184,8 @@ PALPATE_LANES Ints closest(Work& w) noexcept {
   return piercing(w.of_a) | piercing(w.of_b);
 }
 
+PALPATE_LANES Vectors shrunk(Vectors v) noexcept { return all(1.0f / kStretch) * v; }
+
 /// Corners of sixteen triangles, component by component. Four components of four triangles at a
 /// time where there are vectors: stores of single floats would be waited for.
 PALPATE_LANES void gather(const image::RegionTriangle* const (&from)[kBatch],
@@ -226,10 +228,19 @@ PALPATE_LANES Vectors mapped(Vectors p, const Transform& map) noexcept {
           r[6] * s.x + r[7] * s.y + r[8] * s.z + map.translation[2]};
 }
 
-std::uint32_t triangle_distances(const image::RegionTriangle* const (&a)[kBatch],
-                                 const image::RegionTriangle* const (&b)[kBatch],
-                                 const Transform& a_to_b, KernelScratch& scratch,
-                                 float (&out_squared)[kBatch]) noexcept {
+PALPATE_LANES void store_vectors(Vectors v, float (&out)[3][kBatch], int lane) noexcept {
+  store(v.x, out[0] + lane);
+  store(v.y, out[1] + lane);
+  store(v.z, out[2] + lane);
+}
+
+/// @param out_apart  null where points are not asked for
+template <bool kPoints>
+PALPATE_LANES std::uint32_t distances(const image::RegionTriangle* const (&a)[kBatch],
+                                      const image::RegionTriangle* const (&b)[kBatch],
+                                      const Transform& a_to_b, KernelScratch& scratch,
+                                      float (&out_squared)[kBatch],
+                                      float (*out_apart)[3][kBatch]) noexcept {
   Work& work = work_in(scratch);
   TriangleLanes& lanes = scratch.lanes;
   gather(a, lanes.a);
@@ -241,19 +252,47 @@ std::uint32_t triangle_distances(const image::RegionTriangle* const (&a)[kBatch]
       work.a.corner[i] = all(kStretch) * (mapped(corner(lanes.a, i, lane), a_to_b) - origin);
       work.b.corner[i] = all(kStretch) * (corner(lanes.b, i, lane) - origin);
     }
-    const Ints cross = closest<false>(work);
+    const Ints cross = closest<kPoints>(work);
     const Floats squared = work.best.squared * (1.0f / (kStretch * kStretch));
     store(cross ? Floats{} : squared, out_squared + lane);
+    if constexpr (kPoints) store_vectors(shrunk(work.best.apart), *out_apart, lane);
     crossing |= bits(cross) << lane;
   }
   return crossing;
 }
 
-PALPATE_LANES void store_vectors(Vectors v, float (&out)[3][kBatch], int lane) noexcept {
-  const Floats shrink = all(1.0f / kStretch);
-  store(v.x * shrink, out[0] + lane);
-  store(v.y * shrink, out[1] + lane);
-  store(v.z * shrink, out[2] + lane);
+std::uint32_t triangle_distances(const image::RegionTriangle* const (&a)[kBatch],
+                                 const image::RegionTriangle* const (&b)[kBatch],
+                                 const Transform& a_to_b, KernelScratch& scratch,
+                                 float (&out_squared)[kBatch]) noexcept {
+  return distances<false>(a, b, a_to_b, scratch, out_squared, nullptr);
+}
+
+std::uint32_t triangle_ways(const image::RegionTriangle* const (&a)[kBatch],
+                            const image::RegionTriangle* const (&b)[kBatch],
+                            const Transform& a_to_b, KernelScratch& scratch,
+                            float (&out_squared)[kBatch], float (&out_apart)[3][kBatch]) noexcept {
+  return distances<true>(a, b, a_to_b, scratch, out_squared, &out_apart);
+}
+
+void separations(const image::RegionTriangle* const (&a)[kBatch],
+                 const image::RegionTriangle* const (&b)[kBatch], const Transform& a_to_b,
+                 Vec3f along, KernelScratch& scratch, float (&out)[kBatch]) noexcept {
+  TriangleLanes& lanes = scratch.lanes;
+  gather(a, lanes.a);
+  gather(b, lanes.b);
+  const Vectors n = {all(along.x), all(along.y), all(along.z)};
+  for (int lane = 0; lane < static_cast<int>(kBatch); lane += kLanes) {
+    // Near the pair: what lies far from its body's origin is no less exact.
+    const Vectors origin = corner(lanes.b, 0, lane);
+    Floats least_a = all(std::numeric_limits<float>::max());
+    Floats least_b = Floats{};  // of the way back: the origin is one of its corners
+    for (int i = 0; i < 3; ++i) {
+      least_a = least(dot(n, mapped(corner(lanes.a, i, lane), a_to_b) - origin), least_a);
+      least_b = least(dot(n, origin - corner(lanes.b, i, lane)), least_b);
+    }
+    store(least_a + least_b, out + lane);
+  }
 }
 
 void witnesses(KernelScratch& scratch, WitnessLanes& out) noexcept {
@@ -266,8 +305,8 @@ void witnesses(KernelScratch& scratch, WitnessLanes& out) noexcept {
       work.b.corner[i] = all(kStretch) * corner(lanes.b, i, lane);
     }
     out.crossing |= bits(closest<true>(work)) << lane;
-    store_vectors(work.best.on_a, out.on_a, lane);
-    store_vectors(work.best.apart, out.apart, lane);
+    store_vectors(shrunk(work.best.on_a), out.on_a, lane);
+    store_vectors(shrunk(work.best.apart), out.apart, lane);
   }
 }
 

@@ -60,11 +60,11 @@ const Case kCases[] = {
     {"regions, exact",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .exact = true},
      kUnlimited,
-     0x154602849f938dbe},
+     0xc7528ebd300504e3},
     {"regions, 100 units",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      100,
-     0xcad5e0d596f054ff},
+     0xe16a118ffc13f41c},
     {"regions, 60 units, slowly",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      60,
@@ -73,7 +73,7 @@ const Case kCases[] = {
     {"regions, tolerance",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .force_tolerance_N = 3},
      kUnlimited,
-     0x351c4de061e3d31c},
+     0x248cd0e79772a921},
 };
 constexpr int kTicks = 200;
 

@@ -36,7 +36,7 @@ const Case kCases[] = {
     {"levels", {.delta_m = kDelta_m, .s0 = 0.01}, 1, 8},
     {"regions",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
-     regions::kUnitsPerReading + regions::kBatchUnits,
+     regions::kUnitsPerReading + regions::kBatchUnits + regions::kSeparationUnits,
      8},
 };
 

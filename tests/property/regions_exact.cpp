@@ -411,6 +411,54 @@ TEST(RegionSweep, bounds_all_regions_from_below_wherever_the_budget_ends_it) {
   }
 }
 
+/// The witness of a search that has been measured again, and which way it lies.
+regions::Way way_of(const SearchedPair& at, regions::Witness& witness) {
+  Meter meter({}, {});
+  regions::Pace pace(meter);
+  float distances[regions::kBatch];
+  float apart[3][regions::kBatch];
+  at.scratch->batch_a[0] = witness.a;
+  at.scratch->batch_b[0] = witness.b;
+  regions::measure_ways(regions::best_kernels(), at.frame, *at.scratch, pace, 1, distances, apart);
+  witness.distance = distances[0];
+  const Vec3f way = {apart[0][0], apart[1][0], apart[2][0]};
+  return {(1 / sqrt_of(squared_norm(way))) * way, witness.a, witness.b};
+}
+
+TEST(RegionSearch, a_witness_that_is_lowest_has_no_nearer_neighbour) {
+  SearchedPair at(kNear);
+  const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
+  int lowest = 0, not_told = 0, moved = 0;
+  for (std::uint32_t region = 0; region < truth.size(); ++region) {
+    for (std::uint32_t which = 0; which < 20; ++which) {
+      Meter meter({}, {});
+      regions::Pace pace(meter);
+      regions::Witness w =
+          regions::dive(regions::best_kernels(), at.frame, pace, region, 37 * which);
+      for (int steps = 0; steps < 4; ++steps) {
+        const regions::Way way = way_of(at, w);
+        if (w.crosses()) break;
+        regions::Witness after = w;
+        const bool told =
+            regions::is_lowest(regions::best_kernels(), at.frame, *at.scratch, pace, w, way.along);
+        Meter for_one_step({.units = 1}, {});
+        regions::Pace one_step(for_one_step);
+        regions::climb(regions::best_kernels(), at.frame, *at.scratch, one_step, after);
+        if (told) {
+          ASSERT_GE(after.distance, w.distance - 2 * regions::kAsNear);
+        }
+        const bool stays = after.distance >= w.distance;
+        lowest += told ? 1 : 0;
+        not_told += stays && !told ? 1 : 0;
+        moved += stays ? 0 : 1;
+        w = after;
+      }
+    }
+  }
+  EXPECT_GT(lowest, not_told);  // most are told
+  EXPECT_GT(moved, 100);
+}
+
 TEST(RegionSearch, first_pair_and_climb_are_of_the_region_and_its_bound_holds) {
   SearchedPair at(kNear);
   const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);

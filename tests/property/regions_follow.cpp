@@ -276,7 +276,7 @@ TEST(RegionsFollow, units_are_kept_and_distances_are_of_the_present_pose) {
     std::vector<regions::Witness> before;
     for (std::uint32_t k = 0; k < memory.states.size(); ++k) {
       if (!memory.states[k].witness.known()) continue;
-      memory.active[work.count++] = {.width = 1, .state = k, .region = k};
+      memory.active[work.count++] = {.width = 1, .way = {}, .state = k, .region = k};
       before.push_back(memory.states[k].witness);
       before.back().distance = measured(before.back());
     }

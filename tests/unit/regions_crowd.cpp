@@ -29,7 +29,7 @@ struct Surface {
       regions[i].parent = i / kWidth;
       regions[i].slot = i % kWidth;
       states[i].witness = {i, i, 0.5f};
-      active.push_back({.state = i, .region = i, .pair = 0});
+      active.push_back({.way = {}, .state = i, .region = i, .pair = 0});
     }
     view.regions = regions;
     pair.image_a = &view;

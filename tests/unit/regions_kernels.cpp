@@ -153,6 +153,63 @@ TEST(RegionKernels, TriangleDistance_of_all_kinds_of_triangles_is_right_to_a_mil
   }
 }
 
+TEST(RegionKernels, TriangleWays_are_as_long_as_the_distances) {
+  Random random(7);
+  const auto scratch = std::make_unique<KernelScratch>();
+  for (int round = 0; round < 1000; ++round) {
+    const Pairs pairs = random_pairs(random);
+    const Kernels& kernels = best_kernels();
+    float squared[kBatch], again[kBatch], apart[3][kBatch];
+    const std::uint32_t crossing =
+        kernels.triangle_distances(pairs.at_a, pairs.at_b, pairs.map, *scratch, squared);
+    ASSERT_EQ(crossing,
+              kernels.triangle_ways(pairs.at_a, pairs.at_b, pairs.map, *scratch, again, apart));
+    ASSERT_EQ(std::memcmp(squared, again, sizeof squared), 0);
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      if ((crossing >> i & 1) != 0) continue;
+      const Vec3d way{double(apart[0][i]), double(apart[1][i]), double(apart[2][i])};
+      ASSERT_NEAR(norm(way), std::sqrt(double(squared[i])), 1e-6 * (1 + norm(way)));
+    }
+  }
+}
+
+/// Along a direction, over all corners in double.
+double separation(const Pairs& pairs, std::uint32_t i, Vec3d along) {
+  double least_a = std::numeric_limits<double>::infinity(), most_b = -least_a;
+  for (int c = 0; c < 3; ++c) {
+    least_a = std::min(least_a, dot(along, mapped(pairs.map, corner(pairs.a[i], c))));
+    most_b = std::max(most_b, dot(along, corner(pairs.b[i], c)));
+  }
+  return least_a - most_b;
+}
+
+TEST(RegionKernels, Separations_bound_distances_and_meet_them_along_their_ways) {
+  Random random(8);
+  const auto scratch = std::make_unique<KernelScratch>();
+  int met = 0;
+  for (int round = 0; round < 1000; ++round) {
+    const Pairs pairs = random_pairs(random);
+    const Kernels& kernels = best_kernels();
+    const double size = 1 + 10 * double(pairs.map.scale);
+    float squared[kBatch], apart[3][kBatch], separations[kBatch];
+    const std::uint32_t crossing =
+        kernels.triangle_ways(pairs.at_a, pairs.at_b, pairs.map, *scratch, squared, apart);
+    const std::uint32_t lane = static_cast<std::uint32_t>(round) % kBatch;
+    const Vec3d way{double(apart[0][lane]), double(apart[1][lane]), double(apart[2][lane])};
+    if ((crossing >> lane & 1) != 0 || !(norm(way) > 1e-3 * size)) continue;
+    const Vec3d along = (1 / norm(way)) * way;
+    kernels.separations(pairs.at_a, pairs.at_b, pairs.map, vec_cast<float>(along), *scratch,
+                        separations);
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      ASSERT_NEAR(double(separations[i]), separation(pairs, i, along), 1e-6 * size);
+      ASSERT_LE(double(separations[i]), std::sqrt(double(squared[i])) + 1e-6 * size);
+    }
+    ASSERT_NEAR(double(separations[lane]), norm(way), 2e-6 * size);
+    ++met;
+  }
+  EXPECT_GT(met, 300);
+}
+
 /// Corners of a box that is given by axes, centre and half lengths.
 std::array<Vec3d, 8> corners_of(const Vec3d (&axes)[3], Vec3d centre, const double (&half)[3]) {
   std::array<Vec3d, 8> out;
@@ -355,7 +412,8 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
   for (int round = 0; round < 500; ++round) {
     const Pairs pairs = random_pairs(random);
     const Boxes boxes = random_boxes(random);
-    float first[kBatch], other[kBatch];
+    float first[kBatch], other[kBatch], way_first[3][kBatch], way_other[3][kBatch];
+    float separation_first[kBatch], separation_other[kBatch];
     WitnessLanes found_first, found_other;
     const auto run = [&](const Kernels& table, float(&squared)[kBatch], WitnessLanes& found) {
       const std::uint32_t crossing =
@@ -364,7 +422,19 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
       return crossing;
     };
     const std::uint32_t crossing = run(*tables()[0], first, found_first);
+    const auto run_along = [&](const Kernels& table, float(&ways)[3][kBatch],
+                               float(&separations)[kBatch]) {
+      float squared[kBatch];
+      table.triangle_ways(pairs.at_a, pairs.at_b, pairs.map, *scratch, squared, ways);
+      const Vec3f along{0.6f, -0.64f, 0.48f};
+      table.separations(pairs.at_a, pairs.at_b, pairs.map, along, *scratch, separations);
+    };
+    run_along(*tables()[0], way_first, separation_first);
     for (const Kernels* table : tables()) {
+      run_along(*table, way_other, separation_other);
+      ASSERT_EQ(std::memcmp(way_first, way_other, sizeof way_first), 0) << table->name;
+      ASSERT_EQ(std::memcmp(separation_first, separation_other, sizeof separation_first), 0)
+          << table->name;
       ASSERT_EQ(crossing, run(*table, other, found_other));
       ASSERT_EQ(std::memcmp(first, other, sizeof first), 0) << table->name;
       ASSERT_EQ(std::memcmp(found_first.apart, found_other.apart, sizeof found_first.apart), 0);

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/kept.hpp"
+
+#include "rt_core/regions/pair_batch.hpp"
+
+namespace palpate::regions {
+namespace {
+
+using levels::PairState;
+
+/// Under a budget, at most this share of it goes to pairs that were kept: where there are many,
+/// none would be left to search with, and so it would stay.
+constexpr double kMostMeasured = 0.5;
+double way_since_proof(const Work& work, const Active& item) noexcept {
+  const PairState& pair = work.pair_of(item);
+  const image::Region& region = pair.image_a->regions[item.region];
+  return way_since(work.state_of(item).at, pair, static_cast<double>(region.reach));
+}
+
+/// RegionState::apart of a pair that is so far apart now, or farther.
+float apart_since(float distance, double way) noexcept {
+  return float_below(static_cast<double>(distance) + way);
+}
+
+/// Takes pairs that are measured, those of a region in their order.
+class Measured {
+ public:
+  explicit Measured(Work& work) noexcept : work_(work) {}
+
+  void operator()(std::uint32_t index, const Witness& pair) noexcept {
+    const Active& item = work_.active()[index];
+    RegionState& state = work_.state_of(item);
+    if (pair.distance < state.witness.distance) state.witness = pair;
+    if (index != index_) k_ = 0;
+    index_ = index;
+    while (k_ < state.near.count && !state.near.pairs[k_].same_pair(pair)) ++k_;
+    if (k_ == state.near.count) return;
+    state.apart[k_] = apart_since(pair.distance, way_since_proof(work_, item));
+  }
+
+ private:
+  Work& work_;
+  std::uint32_t index_ = image::kNone;  // of the region
+  std::uint32_t k_ = 0;                 // of its kept pairs
+};
+
+/// Of a region's kept pairs those that may be nearer than its witness by how they and the bodies
+/// have moved.
+struct Doubtful {
+  std::uint32_t count = 0;
+  std::uint32_t of[kNearPairs];  ///< RegionState::near
+};
+
+Doubtful doubtful_of(const Work& work, const Active& item, double way) noexcept {
+  const RegionState& state = work.state_of(item);
+  const float upper = work.upper_of(item);
+  const float nearest = upper + static_cast<float>(way + kMotionSlack);
+  Doubtful doubtful;
+  for (std::uint32_t k = 0; k < state.near.count; ++k) {
+    const Witness& pair = state.near.pairs[k];
+    if (pair.distance - item.moved >= upper) break;
+    if (state.apart[k] < nearest && !pair.same_pair(state.witness))
+      doubtful.of[doubtful.count++] = k;
+  }
+  return doubtful;
+}
+
+/// Leaves those that along the witness's way may be nearer, or that the budget did not do for.
+void sift(Work& work, const Active& item, double way, Doubtful& doubtful) noexcept {
+  RegionState& state = work.state_of(item);
+  const float upper = work.upper_of(item) - kAsNear;
+  std::uint32_t left = 0;
+  for (std::uint32_t first = 0; first < doubtful.count; first += kBatch) {
+    const std::uint32_t rest = doubtful.count - first;
+    const std::uint32_t count = rest < kBatch ? rest : kBatch;
+    const bool look = work.pace.go_on();
+    float apart[kBatch] = {};
+    if (look) {
+      Witness pairs[kBatch];
+      for (std::uint32_t i = 0; i < kBatch; ++i) {
+        pairs[i] = state.near.pairs[doubtful.of[first + (i < count ? i : 0)]];
+      }
+      separate(*work.memory.kernels, work.frame_of(item), *work.memory.search, work.pace, pairs,
+               item.way.along, apart);
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t k = doubtful.of[first + i];
+      if (look && apart[i] > upper) {
+        state.apart[k] = apart_since(apart[i], way);
+      } else {
+        doubtful.of[left++] = k;
+      }
+    }
+  }
+  doubtful.count = left;
+}
+
+/// Where the budget ends this, the others count as not kept.
+void measure(Work& work, std::uint32_t index, const Doubtful& doubtful,
+             PairBatch<Measured>& batch) noexcept {
+  Active& item = work.active()[index];
+  const NearPairs& near = work.state_of(item).near;
+  for (std::uint32_t k = 0; k < doubtful.count; ++k) {
+    const Witness& pair = near.pairs[doubtful.of[k]];
+    if (!work.pace.go_on()) {
+      const float lower = pair.distance - item.moved - kRounding;
+      item.rest = lower < item.rest ? lower : item.rest;
+      return;
+    }
+    batch.add(index, pair);
+  }
+}
+
+}  // namespace
+
+void measure_kept(Work& work) noexcept {
+  PairBatch batch(work, Measured(work));
+  work.limit_to(kMostMeasured);
+  for (std::uint32_t i = 0; i < work.count; ++i) {
+    Active& item = work.active()[i];
+    const RegionState& state = work.state_of(item);
+    if (state.near.count == 0) continue;
+    const double way = way_since_proof(work, item);
+    Doubtful doubtful = doubtful_of(work, item, way);
+    if (item.way.is_of(state.witness)) sift(work, item, way, doubtful);
+    measure(work, i, doubtful, batch);
+  }
+  batch.measure_all();
+  work.pace.no_limit();
+}
+
+}  // namespace palpate::regions
