@@ -96,7 +96,9 @@ void search_region(Work& work, Active& item, float tolerance, bool first) noexce
 }
 
 void climb_from_witness(Work& work, Active& item) noexcept {
-  climb_to_lowest(work, item);
+  climb(*work.memory.kernels, work.frame_of(item), *work.memory.search, work.pace,
+        work.witness_of(item), item.way);
+  item.climbed = true;
   work.truncated |= !work.pace.go_on();
   work.widen(item);
 }
@@ -120,17 +122,6 @@ void seek(Work& work, Active& item, float width) noexcept {
 }
 
 }  // namespace
-
-void climb_to_lowest(Work& work, Active& item) noexcept {
-  const Kernels& kernels = *work.memory.kernels;
-  const PairFrame& frame = work.frame_of(item);
-  SearchScratch& scratch = *work.memory.search;
-  Witness& witness = work.witness_of(item);
-  item.climbed = true;
-  const bool has_way = item.way.is_of(witness);
-  if (has_way && is_lowest(kernels, frame, scratch, work.pace, witness, item.way.along)) return;
-  climb(kernels, frame, scratch, work.pace, witness);
-}
 
 void close(Work& work, Active& item, float tolerance) noexcept {
   search_region(work, item, tolerance, false);

@@ -19,8 +19,4 @@ void take_up(Work& work, Active& item, float tolerance) noexcept;
 /// @param at_once  not by and by
 void step(Work& work, Active& item, float tolerance, bool at_once) noexcept;
 
-/// Moves a region's witness to neighbours while they are nearer (search.hpp, climb()); where the
-/// way that the tick has measured of it tells that none is, not. The region counts as climbed.
-void climb_to_lowest(Work& work, Active& item) noexcept;
-
 }  // namespace palpate::regions

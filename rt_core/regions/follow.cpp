@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/follow.hpp"
 
-#include "rt_core/regions/close.hpp"
 #include "rt_core/regions/look_into.hpp"
 #include "rt_core/regions/pair_batch.hpp"
 
@@ -105,8 +104,10 @@ class Follower {
     Active& item = work_.active()[index];
     if (!is_open(item) || !has_turn(item, kWitnessEvery)) return;
     RegionState& state = work_.state_of(item);
-    climb_to_lowest(work_, item);
-    note_seed(*work_.frame_of(item).a, state.witness, state.seeds);
+    const PairFrame& frame = work_.frame_of(item);
+    climb(*work_.memory.kernels, frame, *work_.memory.search, work_.pace, state.witness, item.way);
+    note_seed(*frame.a, state.witness, state.seeds);
+    item.climbed = true;
   }
 
   void climb_seed(std::uint32_t index) noexcept {

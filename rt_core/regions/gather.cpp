@@ -118,16 +118,13 @@ class WitnessBatch {
     if (count_ == 0) return;
     const PairFrame& frame = work_.frame_of(work_.active()[of_[0]]);
     float distances[kBatch];
-    float apart[3][kBatch];
+    Way ways[kBatch];
     measure_ways(*work_.memory.kernels, frame, *work_.memory.search, work_.pace, count_, distances,
-                 apart);
+                 ways);
     for (std::uint32_t i = 0; i < count_; ++i) {
       Active& item = work_.active()[of_[i]];
-      Witness& witness = work_.witness_of(item);
-      witness.distance = distances[i];
-      const Vec3f way = {apart[0][i], apart[1][i], apart[2][i]};
-      const float length = sqrt_of(squared_norm(way));
-      if (length > 0 && !witness.crosses()) item.way = {(1 / length) * way, witness.a, witness.b};
+      work_.witness_of(item).distance = distances[i];
+      item.way = ways[i];
     }
     count_ = 0;
   }

@@ -36,16 +36,6 @@ constexpr std::uint64_t tail_contacts(std::uint64_t contacts, std::uint64_t cros
   return contacts + kMore * crossings;
 }
 
-/// Which way a pair of triangles is apart.
-struct Way {
-  Vec3f along{};  ///< from b's closest point to a's, of length 1, in the coordinates of b's image
-  std::uint32_t a = image::kNone;  ///< not known
-  std::uint32_t b = image::kNone;
-  [[nodiscard]] bool is_of(const Witness& w) const noexcept {
-    return w.known() && a == w.a && b == w.b;
-  }
-};
-
 /// A region that may be nearer than delta in this tick.
 struct Active {
   float rest = 0;     ///< at the present poses

@@ -362,6 +362,16 @@ void around(const PairFrame& frame, const Witness& witness, Witness (&out)[kBatc
   for (std::uint32_t i = 0; i < kBatch; ++i) out[i] = {of_a[i / 4], of_b[i % 4]};
 }
 
+/// No pair is nearer along a witness's way than the witness, which is the first.
+bool is_lowest(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+               const Witness (&pairs)[kBatch], Vec3f along) noexcept {
+  float apart[kBatch];
+  separate(kernels, frame, scratch, pace, pairs, along, apart);
+  float least = apart[0];
+  for (const float other : apart) least = other < least ? other : least;
+  return least > apart[0] - kAsNear;
+}
+
 /// The nearest of a node's children, and of those that overlap the one whose centre is.
 std::uint32_t nearest_child(const Kernels& kernels, const Box& box, const Transform& to_node,
                             const RegionNode& node, Pace& pace) noexcept {
@@ -419,12 +429,21 @@ void measure(const Kernels& kernels, const PairFrame& frame, SearchScratch& scra
 
 void measure_ways(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
                   Pace& pace, std::uint32_t count, float (&out_distances)[kBatch],
-                  float (&out_apart)[3][kBatch]) noexcept {
+                  Way (&out_ways)[kBatch]) noexcept {
   fill_up(scratch, count);
   pace.charge(kBatchUnits);
   const Batch pairs(frame, scratch);
-  kernels.triangle_ways(pairs.a, pairs.b, frame.a_to_b, scratch.kernel, out_distances, out_apart);
-  for (float& d : out_distances) d = sqrt_of(frame.scale2_b * d);
+  float apart[3][kBatch];
+  kernels.triangle_ways(pairs.a, pairs.b, frame.a_to_b, scratch.kernel, out_distances, apart);
+  for (std::uint32_t i = 0; i < kBatch; ++i) {
+    out_distances[i] = sqrt_of(frame.scale2_b * out_distances[i]);
+    const Vec3f way = {apart[0][i], apart[1][i], apart[2][i]};
+    const float length = sqrt_of(squared_norm(way));
+    out_ways[i] = {};
+    if (length > 0 && out_distances[i] > 0) {
+      out_ways[i] = {(1 / length) * way, scratch.batch_a[i], scratch.batch_b[i]};
+    }
+  }
 }
 
 void separate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
@@ -441,33 +460,24 @@ void separate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scr
   for (float& apart : out) apart *= scale_b;
 }
 
-bool is_lowest(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-               const Witness& witness, Vec3f along) noexcept {
-  Witness pairs[kBatch];
-  around(frame, witness, pairs);
-  float apart[kBatch];
-  separate(kernels, frame, scratch, pace, pairs, along, apart);
-  bool lowest = true;
-  for (const float other : apart) lowest &= other > witness.distance - kAsNear;
-  return lowest;
-}
-
 void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-           Witness& witness) noexcept {
+           Witness& witness, Way way) noexcept {
   for (std::uint32_t step = 0; step < kMaxClimb && pace.go_on(); ++step) {
     Witness pairs[kBatch];
     around(frame, witness, pairs);
+    if (way.is_of(witness) && is_lowest(kernels, frame, scratch, pace, pairs, way.along)) return;
     for (std::uint32_t i = 0; i < kBatch; ++i) {
       scratch.batch_a[i] = pairs[i].a;
       scratch.batch_b[i] = pairs[i].b;
     }
-    pace.charge(kBatchUnits);
-    float squared[kBatch];
-    evaluate(kernels, frame, scratch, squared);
+    float distances[kBatch];
+    Way ways[kBatch];
+    measure_ways(kernels, frame, scratch, pace, kBatch, distances, ways);
     std::uint32_t nearest = 0;  // the witness itself
     for (std::uint32_t i = 1; i < kBatch; ++i)
-      nearest = squared[i] < squared[nearest] ? i : nearest;
-    witness = {scratch.batch_a[nearest], scratch.batch_b[nearest], sqrt_of(squared[nearest])};
+      nearest = distances[i] < distances[nearest] ? i : nearest;
+    witness = {pairs[nearest].a, pairs[nearest].b, distances[nearest]};
+    way = ways[nearest];
     if (nearest == 0) return;
   }
 }

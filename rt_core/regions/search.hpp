@@ -99,15 +99,25 @@ class Pace {
   bool time_ended_ = false;
 };
 
+/// Which way a pair of triangles is apart.
+struct Way {
+  Vec3f along{};  ///< from b's closest point to a's, of length 1, in the coordinates of b's image
+  std::uint32_t a = image::kNone;  ///< not known
+  std::uint32_t b = image::kNone;
+  [[nodiscard]] bool is_of(const Witness& w) const noexcept {
+    return w.known() && a == w.a && b == w.b;
+  }
+};
+
 /// Distances at the present poses of the pairs in scratch.batch_a and batch_b, sixteen at a time.
 /// @param count  1 to kBatch
 void measure(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
              std::uint32_t count, float (&out_distances)[kBatch]) noexcept;
 
-/// The same, and the way from b's closest point to a's, in the coordinates of b's image.
+/// The same, and which way each pair is apart; not known of those that cross.
 void measure_ways(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
                   Pace& pace, std::uint32_t count, float (&out_distances)[kBatch],
-                  float (&out_apart)[3][kBatch]) noexcept;
+                  Way (&out_ways)[kBatch]) noexcept;
 
 /// How far sixteen pairs are apart, in units, along a direction of length 1 in the coordinates of
 /// b's image: none is nearer. kSeparationUnits.
@@ -115,20 +125,18 @@ void separate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scr
               const Witness (&pairs)[kBatch], Vec3f along, float (&out)[kBatch]) noexcept;
 inline constexpr std::uint64_t kSeparationUnits = 2;
 
-/// Goes from a witness to a neighbour of either triangle, or of both, while that is nearer; within
-/// the witness's region of a. At most kMaxClimb batches.
-inline constexpr std::uint32_t kMaxClimb = 3;
-void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-           Witness& witness) noexcept;
-
-/// Where a climb would end where it begins, as far as one look along the witness's way tells: no
-/// neighbour is nearer by more than kAsNear. kSeparationUnits.
-/// @param along  from its point on b to that on a, of length 1, in the coordinates of b's image
-bool is_lowest(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-               const Witness& witness, Vec3f along) noexcept;
 /// Pairs that are nearer by less than this are as near: what triangles that share the witness's
 /// corner seem to be nearer by rounding.
 inline constexpr float kAsNear = 0.25f * kRounding;
+
+/// Goes from a witness to a neighbour of either triangle, or of both, while that is nearer; within
+/// the witness's region of a. Where one look along the witness's way tells that none is nearer by
+/// more than kAsNear, that is all: kSeparationUnits. Else at most kMaxClimb batches and as many
+/// looks.
+/// @param way  of the witness, where it is known
+inline constexpr std::uint32_t kMaxClimb = 3;
+void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+           Witness& witness, Way way = {}) noexcept;
 
 /// A pair of triangles that may be near, in a part of a region: the box of one of its leaves, and
 /// down the other tree from nearest child to nearest child. Its distance is not measured.
