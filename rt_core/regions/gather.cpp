@@ -118,13 +118,14 @@ class WitnessBatch {
     if (count_ == 0) return;
     const PairFrame& frame = work_.frame_of(work_.active()[of_[0]]);
     float distances[kBatch];
-    Way ways[kBatch];
+    WayLanes ways;
     measure_ways(*work_.memory.kernels, frame, *work_.memory.search, work_.pace, count_, distances,
                  ways);
     for (std::uint32_t i = 0; i < count_; ++i) {
       Active& item = work_.active()[of_[i]];
-      work_.witness_of(item).distance = distances[i];
-      item.way = ways[i];
+      Witness& witness = work_.witness_of(item);
+      witness.distance = distances[i];
+      item.way = way_of(ways, i, witness);
     }
     count_ = 0;
   }

@@ -11,6 +11,7 @@ using levels::PairState;
 /// Under a budget, at most this share of it goes to pairs that were kept: where there are many,
 /// none would be left to search with, and so it would stay.
 constexpr double kMostMeasured = 0.5;
+
 double way_since_proof(const Work& work, const Active& item) noexcept {
   const PairState& pair = work.pair_of(item);
   const image::Region& region = pair.image_a->regions[item.region];

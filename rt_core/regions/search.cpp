@@ -48,6 +48,15 @@ std::uint32_t evaluate(const Kernels& kernels, const PairFrame& frame, SearchScr
   return crossing;
 }
 
+/// The lanes that are left repeat the first.
+void fill_up(SearchScratch& scratch, std::uint32_t count) noexcept {
+  PALPATE_ASSERT(count > 0 && count <= kBatch);
+  for (std::uint32_t i = count; i < kBatch; ++i) {
+    scratch.batch_a[i] = scratch.batch_a[0];
+    scratch.batch_b[i] = scratch.batch_b[0];
+  }
+}
+
 class Search {
  public:
   Search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
@@ -205,10 +214,7 @@ class Search {
   }
 
   void flush() noexcept {
-    for (std::uint32_t i = pending_; i < kBatch; ++i) {
-      scratch_.batch_a[i] = scratch_.batch_a[0];
-      scratch_.batch_b[i] = scratch_.batch_b[0];
-    }
+    fill_up(scratch_, pending_);
     pace_.charge(kBatchUnits);
     float squared[kBatch];
     const std::uint32_t crossing = evaluate(kernels_, frame_, scratch_, squared);
@@ -324,15 +330,6 @@ class Search {
   CrossingList* crossings_ = nullptr;  // null: distances are asked for
 };
 
-/// The lanes that are left repeat the first.
-void fill_up(SearchScratch& scratch, std::uint32_t count) noexcept {
-  PALPATE_ASSERT(count > 0 && count <= kBatch);
-  for (std::uint32_t i = count; i < kBatch; ++i) {
-    scratch.batch_a[i] = scratch.batch_a[0];
-    scratch.batch_b[i] = scratch.batch_b[0];
-  }
-}
-
 std::uint32_t neighbour(const ImageView& image, std::uint32_t triangle, std::uint32_t i) noexcept {
   const std::uint32_t n = image.region_triangles[triangle].neighbours[i];
   return n == image::kNone ? triangle : n;
@@ -429,21 +426,20 @@ void measure(const Kernels& kernels, const PairFrame& frame, SearchScratch& scra
 
 void measure_ways(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
                   Pace& pace, std::uint32_t count, float (&out_distances)[kBatch],
-                  Way (&out_ways)[kBatch]) noexcept {
+                  WayLanes& out_ways) noexcept {
   fill_up(scratch, count);
   pace.charge(kBatchUnits);
   const Batch pairs(frame, scratch);
-  float apart[3][kBatch];
-  kernels.triangle_ways(pairs.a, pairs.b, frame.a_to_b, scratch.kernel, out_distances, apart);
-  for (std::uint32_t i = 0; i < kBatch; ++i) {
-    out_distances[i] = sqrt_of(frame.scale2_b * out_distances[i]);
-    const Vec3f way = {apart[0][i], apart[1][i], apart[2][i]};
-    const float length = sqrt_of(squared_norm(way));
-    out_ways[i] = {};
-    if (length > 0 && out_distances[i] > 0) {
-      out_ways[i] = {(1 / length) * way, scratch.batch_a[i], scratch.batch_b[i]};
-    }
-  }
+  kernels.triangle_ways(pairs.a, pairs.b, frame.a_to_b, scratch.kernel, out_distances,
+                        out_ways.apart);
+  for (float& d : out_distances) d = sqrt_of(frame.scale2_b * d);
+}
+
+Way way_of(const WayLanes& ways, std::uint32_t lane, const Witness& measured) noexcept {
+  const Vec3f way = {ways.apart[0][lane], ways.apart[1][lane], ways.apart[2][lane]};
+  const float length = sqrt_of(squared_norm(way));
+  if (!(length > 0) || measured.crosses()) return {};
+  return {(1 / length) * way, measured.a, measured.b};
 }
 
 void separate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
@@ -471,14 +467,14 @@ void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratc
       scratch.batch_b[i] = pairs[i].b;
     }
     float distances[kBatch];
-    Way ways[kBatch];
+    WayLanes ways;
     measure_ways(kernels, frame, scratch, pace, kBatch, distances, ways);
     std::uint32_t nearest = 0;  // the witness itself
     for (std::uint32_t i = 1; i < kBatch; ++i)
       nearest = distances[i] < distances[nearest] ? i : nearest;
     witness = {pairs[nearest].a, pairs[nearest].b, distances[nearest]};
-    way = ways[nearest];
     if (nearest == 0) return;
+    way = way_of(ways, nearest, witness);
   }
 }
 

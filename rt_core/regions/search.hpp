@@ -114,10 +114,19 @@ struct Way {
 void measure(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
              std::uint32_t count, float (&out_distances)[kBatch]) noexcept;
 
-/// The same, and which way each pair is apart; not known of those that cross.
+/// From b's closest points to a's, in the coordinates of b's image; of crossing pairs any.
+struct WayLanes {
+  float apart[3][kBatch];
+};
+
+/// The same, and how each pair is apart.
 void measure_ways(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
                   Pace& pace, std::uint32_t count, float (&out_distances)[kBatch],
-                  Way (&out_ways)[kBatch]) noexcept;
+                  WayLanes& out_ways) noexcept;
+
+/// Of one of the pairs measured; not known where it crosses.
+[[nodiscard]] Way way_of(const WayLanes& ways, std::uint32_t lane,
+                         const Witness& measured) noexcept;
 
 /// How far sixteen pairs are apart, in units, along a direction of length 1 in the coordinates of
 /// b's image: none is nearer. kSeparationUnits.

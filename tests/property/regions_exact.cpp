@@ -423,21 +423,22 @@ TEST(RegionSearch, a_climb_ends_early_only_where_no_neighbour_is_nearer) {
           regions::dive(regions::best_kernels(), at.frame, pace, region, 37 * which);
       for (int step = 0; step < 4; ++step) {
         float distances[regions::kBatch];
-        regions::Way ways[regions::kBatch];
+        regions::WayLanes ways;
         at.scratch->batch_a[0] = w.a;
         at.scratch->batch_b[0] = w.b;
         regions::measure_ways(regions::best_kernels(), at.frame, *at.scratch, pace, 1, distances,
                               ways);
         w.distance = distances[0];
         if (w.crosses()) break;
-        ASSERT_TRUE(ways[0].is_of(w));
+        const regions::Way way = regions::way_of(ways, 0, w);
+        ASSERT_TRUE(way.is_of(w));
         Meter for_one_step({.units = 1}, {});
         regions::Pace one_step(for_one_step);
         regions::Witness after = w;
         regions::climb(regions::best_kernels(), at.frame, *at.scratch, one_step, after);
         const std::uint64_t before = meter.used();
         regions::Witness quick = w;
-        regions::climb(regions::best_kernels(), at.frame, *at.scratch, pace, quick, ways[0]);
+        regions::climb(regions::best_kernels(), at.frame, *at.scratch, pace, quick, way);
         const bool at_once = meter.used() - before == regions::kSeparationUnits;
         if (at_once) {
           ASSERT_TRUE(quick.same_pair(w));
