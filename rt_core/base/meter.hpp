@@ -9,12 +9,13 @@
 
 namespace palpate {
 
-/// Brings a time nearer to what it was this tick, within a few ticks; one that was interrupted by
-/// the host counts for little.
+/// Brings a time nearer to what it was this tick, within a few ticks, or all the way where it is
+/// not known (0); one that was interrupted by the host counts for little.
 inline void follow(std::uint64_t& time_ns, std::uint64_t now_ns) noexcept {
   constexpr std::uint64_t kLeast_ns = 1000;
   const std::uint64_t most = 4 * time_ns + kLeast_ns;
-  time_ns = (3 * time_ns + (now_ns < most ? now_ns : most)) / 4;
+  const std::uint64_t now = now_ns < most ? now_ns : most;
+  time_ns = time_ns > 0 ? (3 * time_ns + now) / 4 : now;
 }
 
 /// How long the tail of a tick takes for each of its contacts, learnt from ticks.

@@ -33,7 +33,7 @@ constexpr double kUnitsToFollow = 16;
 /// Where images can be looked up in, a survey takes the place of following, from so many ticks on
 /// and with this share of one. What a first search takes is told by those of before, or by a few,
 /// which end when they have taken too much together.
-constexpr double kTicksToSurvey = 2.5;
+constexpr double kTicksToSurvey = 1.75;
 constexpr std::uint32_t kProbes = 3;
 constexpr double kMostSurveyed = 0.97;
 constexpr double kFewestToSurvey = 64;

@@ -10,6 +10,9 @@ namespace {
 /// So many regions tell a force. With fewer looks than these they meet nothing near.
 constexpr double kTelling = 64;
 constexpr double kFewestLooks = 4;
+/// More see little that is new in a region; a climb from the nearest does more.
+constexpr double kMostSpread = 14;
+static_assert(kMostSpread <= kMostLooks);
 /// Beside the nearest, of each that is spread over a region.
 constexpr double kBeside = 0.75;
 constexpr double kUnitsPerLook = 1.0 / kLooksPerUnit + static_cast<double>(kBatchUnits) / kBatch;
@@ -21,18 +24,23 @@ constexpr std::uint32_t kTellingRounds = 12;
 constexpr std::uint32_t kMostRepeats = 8;
 /// Of the survey's units: once the first rounds have been seen, the rest does more in climbs and
 /// searches from there than in more looks.
-constexpr double kMostForRepeats = 0.9;
+constexpr double kMostForRepeats = 0.8;
 
 class Survey {
  public:
   Survey(Work& work, double share) noexcept
-      : work_(work), share_(share), round_of_(work.memory.queue), batch_(work, Take{this}) {
+      : work_(work),
+        share_(share),
+        round_of_(work.memory.queue),
+        batch_(work, Take{this}),
+        began_ns_(work.meter.elapsed_ns()),
+        began_at_(work.pace.used()) {
     const double telling = work.count < kTelling ? work.count : kTelling;
     const double units = share * work.units_of_tick();
     const double each = units / (telling * (1 + kBeside) * kUnitsPerLook);
-    looks_ = static_cast<std::uint32_t>(each < kFewestLooks ? kFewestLooks
-                                        : each < kMostLooks ? each
-                                                            : kMostLooks);
+    looks_ = static_cast<std::uint32_t>(each < kFewestLooks  ? kFewestLooks
+                                        : each < kMostSpread ? each
+                                                             : kMostSpread);
     beside_ = static_cast<std::uint32_t>(kBeside * looks_);
     const std::uint32_t rounds = work.count / kRegionsPerRound + 1;
     rounds_ = rounds < kMostRounds ? rounds : kMostRounds;
@@ -105,10 +113,13 @@ class Survey {
     return used + regions * (looks_ + beside_) * kUnitsPerLook <= share * (used + affordable());
   }
 
-  /// Work units that the tick has left, at the pace that it has had.
+  /// Work units that the tick has left: at the pace of the survey, which is another than that of
+  /// what came before it; before its first round, at that of ticks of late.
   double affordable() const noexcept {
-    const std::uint64_t used = work_.pace.used();
-    return work_.meter.queries_affordable(work_.meter.elapsed_ns() / (used > 0 ? used : 1));
+    const std::uint64_t used = work_.pace.used() - began_at_;
+    const std::uint64_t unit_ns =
+        used > 0 ? (work_.meter.elapsed_ns() - began_ns_) / used : work_.memory.pursuit.unit_ns;
+    return work_.meter.queries_affordable(unit_ns);
   }
 
   void see(std::uint32_t round) noexcept {
@@ -152,6 +163,8 @@ class Survey {
   double share_;
   std::span<std::uint32_t> round_of_;
   PairBatch<Take> batch_;
+  std::uint64_t began_ns_;    // since the tick began
+  std::uint64_t began_at_;    // in units of the tick
   std::uint32_t looks_ = 0;   // spread over a region
   std::uint32_t beside_ = 0;  // beside the nearest of them
   std::uint32_t rounds_ = 0;

@@ -12,7 +12,7 @@ namespace palpate::regions {
 /// seen evenly of everywhere: a force is told by few contacts from all sides (crowd.hpp), and told
 /// wrong by many from one. The first twelve are repeated up to eight times, with other places,
 /// before others begin. A round begins if there seem to be units and time for all of it. A region
-/// has four to kMostLooks looks in a round, as many as there are units for if 64 are to be seen.
+/// has four to fourteen looks in a round, as many as there are units for if 64 are to be seen.
 /// In ticks that are none after a jump, goes on where the last survey ended (Pursuit::surveyed),
 /// round by round.
 ///
