@@ -211,8 +211,7 @@ void measure(Work& work, std::uint32_t index) noexcept {
 
 void refine(Work& work) noexcept {
   while (!work.waiting.empty() && !work.out_of_budget()) {
-    const std::uint32_t index = work.waiting.top().node;
-    work.waiting.pop();
+    const std::uint32_t index = work.next();
     if ((work.tree[index].flags & kMeasured) != 0) {
       split(work, index);
     } else {

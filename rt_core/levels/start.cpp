@@ -91,16 +91,6 @@ double count_near(const Work& work) noexcept {
   return near;
 }
 
-/// Nodes inside the tree keep the contact that they had when they were split. It has aged unseen,
-/// and may look deeper by now than anything below it.
-void forget_inside(Work& work) noexcept {
-  for (const std::uint32_t index : work.tree.front()) {
-    for (std::uint32_t p = work.tree[index].parent; p != kNone; p = work.tree[p].parent) {
-      work.tree[p].contact = 0;
-    }
-  }
-}
-
 /// Those of its children that are in the front.
 double near_children(const Work& work, const Node& parent) noexcept {
   double near = 0;
@@ -109,21 +99,29 @@ double near_children(const Work& work, const Node& parent) noexcept {
   return near;
 }
 
-/// Every ancestor gets the nearest contact below it, so that none is lost to a cut.
-void carry_contacts_up(Work& work) noexcept {
-  forget_inside(work);
-  for (const std::uint32_t index : work.tree.front()) {
-    const Node& node = work.tree[index];
-    if (node.contact == 0) continue;
-    const PairState& pair = work.pair_of(node);
-    const double distance = remeasured(pair, node).distance;
-    for (std::uint32_t p = node.parent; p != kNone; p = work.tree[p].parent) {
-      Node& above = work.tree[p];
-      const bool better = above.contact == 0 || node.contact < above.contact;
-      if (!better && (node.contact > above.contact || remeasured(pair, above).distance <= distance))
-        break;
-      hand_over(node, above);
+/// To its parent, where that has none that is nearer.
+void hand_up(Work& work, const PairState& pair, const Node& node) noexcept {
+  if (node.contact == 0 || node.parent == kNone) return;
+  Node& above = work.tree[node.parent];
+  const bool better = above.contact == 0 || node.contact < above.contact ||
+                      (node.contact == above.contact &&
+                       remeasured(pair, node).distance < remeasured(pair, above).distance);
+  if (better) hand_over(node, above);
+}
+
+/// Every ancestor gets the nearest contact below it, so that none is lost to a cut. What it kept
+/// when it was split it forgets: that has aged unseen, and may look deeper by now than anything
+/// below it. Depth first, children before parents: each node of the tree is visited twice at most.
+void carry_contacts_up(Work& work, const PairState& pair) noexcept {
+  std::uint32_t at = pair.root;
+  for (;;) {
+    for (; !work.tree.in_front(at); at = work.tree[at].first_child) work.tree[at].contact = 0;
+    for (; work.tree[at].next_sibling == kNone; at = work.tree[at].parent) {
+      hand_up(work, pair, work.tree[at]);
+      if (at == pair.root) return;
     }
+    hand_up(work, pair, work.tree[at]);
+    at = work.tree[at].next_sibling;
   }
 }
 
@@ -202,7 +200,7 @@ void cut_back(Work& work, double in_budget) noexcept {
   if (is_affordable(work, kFrontOverBudget * affordable)) return;
   if (any_searches(work) && work.tree.front().size() < kSearchedFront) return;
   const double most = kFrontCut * affordable;
-  carry_contacts_up(work);
+  for (const PairState& pair : work.memory.pairs) carry_contacts_up(work, pair);
   for (const double from : kCutFrom) {
     static_cast<void>(raise_near(work, from, most));
     if (is_affordable(work, most)) return;
@@ -241,7 +239,6 @@ void start(Work& work) noexcept {
   begin_searches(work, affordable);
   recall_touches(work, affordable);
   cut_back(work, affordable);
-  std::uint64_t kept = 0;
   const std::span<const std::uint32_t> front = work.tree.front();
   for (std::size_t i = 0; i < front.size(); ++i) {
     if (i + kAhead < front.size()) __builtin_prefetch(&work.tree[front[i + kAhead]], 1);
@@ -252,9 +249,7 @@ void start(Work& work) noexcept {
     node.report = kNone;
     renew(work, node);
     wait_if_near(work, index);
-    if (work.is_near(node) && node.contact == kFound) ++kept;
   }
-  work.meter.expect_contacts(kept);
 }
 
 void wait_if_near(Work& work, std::uint32_t index) noexcept {

@@ -30,7 +30,16 @@ bool Work::rests_apart(Node& node, const convex::Distance& own) noexcept {
 
 void Work::wait(const Waiting& item) noexcept {
   waiting.push(item);
+  kept += tree[item.node].contact == kFound ? 1u : 0u;
+  meter.expect_contacts(report.count() + kept);
   tally.count([&](auto& counters) { raise_mark(counters.most_waiting, waiting.items().size()); });
+}
+
+std::uint32_t Work::next() noexcept {
+  const std::uint32_t index = waiting.top().node;
+  waiting.pop();
+  kept -= tree[index].contact == kFound ? 1u : 0u;
+  return index;
 }
 
 void Work::leave_unresolved(double lower_m, const Node& node) noexcept {
@@ -77,7 +86,7 @@ void Work::add_contact(Node& node, const LeafContact& contact) noexcept {
   if (contact.distance < pair.nearest) pair.nearest = contact.distance;
   pair.searches = false;
   if (node.report != kNone) return report.replace(pair, node, contact);
-  if (report.add(pair, node, contact)) return meter.expect_contacts(report.count());
+  if (report.add(pair, node, contact)) return meter.expect_contacts(report.count() + kept);
   result.truncated_by_memory = true;
   leave_unresolved(certain_m(node), node);
 }

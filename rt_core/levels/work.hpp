@@ -52,8 +52,12 @@ struct Work {
   /// The same with the query of its own hulls at hand.
   bool rests_apart(Node& node, const convex::Distance& own) noexcept;
 
-  /// Puts something on the queue.
+  /// Puts something on the queue. Should the budget end before its turn, the contact that it keeps
+  /// is reported: time is left for that, too.
   void wait(const Waiting& item) noexcept;
+
+  /// Takes the first one off the queue.
+  [[nodiscard]] std::uint32_t next() noexcept;
 
   /// Notes what is not resolved, for the certificate.
   void leave_unresolved(double lower_m, const Node& node) noexcept;
@@ -85,6 +89,7 @@ struct Work {
   Report report;
   WaitQueue waiting;
   Stopped stopped;
+  std::uint32_t kept = 0;  ///< contacts of what waits
   QueryResult result{.unresolved_lower_m = std::numeric_limits<double>::infinity()};
 };
 

@@ -44,7 +44,7 @@ const Case kCases[] = {
     {"simplified, dives, 40 units",
      {.delta_m = kDelta_m, .s0 = 0.02, .contact_dive = true},
      40,
-     0x18ed9360f372afd6},
+     0xfa3dfa9b7ee755e7},
     {"simplified, dives, 40 units, by deviation",
      {.delta_m = kDelta_m, .s0 = 0.02, .order = Order::deviation, .contact_dive = true},
      40,
