@@ -18,6 +18,7 @@ struct Waiting {
   double lower_m = 0;  ///< the proved lower bound of its distance in metres
   std::uint32_t node = 0;
   bool later = false;  ///< adds detail: after all that only renews contacts
+  bool keeps = false;  ///< a contact, when it began to wait
 };
 
 /// A strict total order: results do not depend on how the queue came about.

@@ -28,18 +28,19 @@ bool Work::rests_apart(Node& node, const convex::Distance& own) noexcept {
   return !is_near(node);
 }
 
-void Work::wait(const Waiting& item) noexcept {
+void Work::wait(Waiting item) noexcept {
+  item.keeps = tree[item.node].contact == kFound;
   waiting.push(item);
-  kept += tree[item.node].contact == kFound ? 1u : 0u;
+  kept += item.keeps ? 1u : 0u;
   meter.expect_contacts(report.count() + kept);
   tally.count([&](auto& counters) { raise_mark(counters.most_waiting, waiting.items().size()); });
 }
 
 std::uint32_t Work::next() noexcept {
-  const std::uint32_t index = waiting.top().node;
+  const Waiting item = waiting.top();
   waiting.pop();
-  kept -= tree[index].contact == kFound ? 1u : 0u;
-  return index;
+  kept -= item.keeps ? 1u : 0u;
+  return item.node;
 }
 
 void Work::leave_unresolved(double lower_m, const Node& node) noexcept {

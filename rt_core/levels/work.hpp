@@ -54,7 +54,7 @@ struct Work {
 
   /// Puts something on the queue. Should the budget end before its turn, the contact that it keeps
   /// is reported: time is left for that, too.
-  void wait(const Waiting& item) noexcept;
+  void wait(Waiting item) noexcept;
 
   /// Takes the first one off the queue.
   [[nodiscard]] std::uint32_t next() noexcept;
