@@ -195,7 +195,9 @@ void note_own(const Pieces& pieces, const ClockTape& clock, std::uint64_t deadli
   const auto past = static_cast<std::size_t>(
       std::upper_bound(told.begin(), told.end(), deadline_ns) - told.begin());
   const std::size_t last = past > 0 ? past - 1 : 0;  // look before the deadline
-  const double own = us_since(deadline_ns, told[last]) + pieces.us(last, pieces.size());
+  // Where even the first look was too late, the host was before it.
+  const double left = std::max(0.0, us_since(told[last], deadline_ns));
+  const double own = pieces.us(last, pieces.size()) - left;
   row.own_us.push_back(static_cast<float>(own));
   row.piece_us = std::max(row.piece_us, pieces.us(last, last + 1));
   row.rest_us = std::max(row.rest_us, pieces.us(last + 1, pieces.size()));
