@@ -101,7 +101,7 @@ double near_children(const Work& work, const Node& parent) noexcept {
 
 /// To its parent, where that has none that is nearer.
 void hand_up(Work& work, const PairState& pair, const Node& node) noexcept {
-  if (node.contact == 0 || node.parent == kNone) return;
+  if (node.contact == 0) return;
   Node& above = work.tree[node.parent];
   const bool better = above.contact == 0 || node.contact < above.contact ||
                       (node.contact == above.contact &&
@@ -116,11 +116,11 @@ void carry_contacts_up(Work& work, const PairState& pair) noexcept {
   std::uint32_t at = pair.root;
   for (;;) {
     for (; !work.tree.in_front(at); at = work.tree[at].first_child) work.tree[at].contact = 0;
-    for (; work.tree[at].next_sibling == kNone; at = work.tree[at].parent) {
-      hand_up(work, pair, work.tree[at]);
+    for (;; at = work.tree[at].parent) {
       if (at == pair.root) return;
+      hand_up(work, pair, work.tree[at]);
+      if (work.tree[at].next_sibling != kNone) break;
     }
-    hand_up(work, pair, work.tree[at]);
     at = work.tree[at].next_sibling;
   }
 }

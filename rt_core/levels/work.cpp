@@ -32,7 +32,7 @@ void Work::wait(Waiting item) noexcept {
   item.keeps = tree[item.node].contact == kFound;
   waiting.push(item);
   kept += item.keeps ? 1u : 0u;
-  meter.expect_contacts(report.count() + kept);
+  leave_time_for_contacts();
   tally.count([&](auto& counters) { raise_mark(counters.most_waiting, waiting.items().size()); });
 }
 
@@ -81,13 +81,15 @@ void Work::note_cap(const PairState& pair, const LeafContact& contact) noexcept 
   if (gap > result.capped_gap_m) result.capped_gap_m = gap;
 }
 
+void Work::leave_time_for_contacts() noexcept { meter.expect_contacts(report.count() + kept); }
+
 void Work::add_contact(Node& node, const LeafContact& contact) noexcept {
   PairState& pair = pair_of(node);
   if (contact.distance >= pair.delta) return;
   if (contact.distance < pair.nearest) pair.nearest = contact.distance;
   pair.searches = false;
   if (node.report != kNone) return report.replace(pair, node, contact);
-  if (report.add(pair, node, contact)) return meter.expect_contacts(report.count() + kept);
+  if (report.add(pair, node, contact)) return leave_time_for_contacts();
   result.truncated_by_memory = true;
   leave_unresolved(certain_m(node), node);
 }

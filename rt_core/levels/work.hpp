@@ -59,6 +59,9 @@ struct Work {
   /// Takes the first one off the queue.
   [[nodiscard]] std::uint32_t next() noexcept;
 
+  /// For those reported, and those that what waits keeps.
+  void leave_time_for_contacts() noexcept;
+
   /// Notes what is not resolved, for the certificate.
   void leave_unresolved(double lower_m, const Node& node) noexcept;
 

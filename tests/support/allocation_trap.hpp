@@ -6,34 +6,31 @@
 #include <span>
 
 #include "tests/support/baked_scene.hpp"
-#include "tools/realtime/host_memory.hpp"
 #include "tools/realtime/thread_counters.hpp"
 
 namespace palpate::test {
 
 /// @param place  sets the poses of a tick by its number
-/// @param warm   ticks before counting begins: they make the stack as large as it gets
-/// Every third tick is cut short. On average there has to be more than one contact a tick. Memory
-/// is made ready as the real-time loop makes it: code that is first run here faults or not by where
-/// the loader has put it.
+/// @param warm   ticks before counting begins: they map code and stack
+/// Every third tick is cut short, of the warm ones too: code that is first run later faults or not
+/// by where the loader has put it. On average there has to be more than one contact a tick.
 template <class Place>
 void expect_no_allocation_and_no_fault(BakedScene& scene, std::span<const Pose> poses, Place place,
                                        int warm, int ticks) {
   if (!realtime::thread_counters().allocator_calls)
     GTEST_SKIP() << "a sanitizer brings an allocator of its own";
+  const auto budget_of = [](int i) { return i % 3 == 0 ? Budget{.units = 50} : Budget{}; };
   TickResult result;
   for (int i = 0; i < warm; ++i) {
     place(i);
-    ASSERT_EQ(tick(*scene.engine, poses, {}, result), Status::ok);
+    ASSERT_EQ(tick(*scene.engine, poses, budget_of(i), result), Status::ok);
   }
-  const realtime::HostMemory ready;
   const realtime::ThreadCounters before = realtime::thread_counters();
   bool sound = true;
   std::size_t contacts = 0;
   for (int i = 0; i < ticks; ++i) {
     place(i);
-    const Budget budget = i % 3 == 0 ? Budget{.units = 50} : Budget{};
-    sound &= tick(*scene.engine, poses, budget, result) == Status::ok;
+    sound &= tick(*scene.engine, poses, budget_of(i), result) == Status::ok;
     contacts += result.contacts.size();
   }
   const realtime::ThreadCounters spent = realtime::thread_counters() - before;

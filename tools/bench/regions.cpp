@@ -65,21 +65,23 @@ Budget within(double budget_us) {
   return budget;
 }
 
+double size_N(const Settings& settings, const Contact& c) {
+  return settings.stiffness_N_per_m * (settings.delta_m - c.distance_m);
+}
+
 /// Of all regions: what clusters make of them is the force stage's affair, and neighbours whose
 /// nearest point is a common one join a cluster or not by the last bit.
 Vec3d summed_force(const Settings& settings, const TickResult& r) {
   Vec3d sum{};
   for (const Contact& c : r.contacts) {
-    sum += (settings.stiffness_N_per_m * (settings.delta_m - c.distance_m)) * c.normal;
+    sum += size_N(settings, c) * c.normal;
   }
   return sum;
 }
 
 double summed_sizes(const Settings& settings, const TickResult& r) {
   double sum = 0;
-  for (const Contact& c : r.contacts) {
-    sum += settings.stiffness_N_per_m * (settings.delta_m - c.distance_m);
-  }
+  for (const Contact& c : r.contacts) sum += size_N(settings, c);
   return sum;
 }
 
