@@ -31,6 +31,9 @@ class MinQueue {
     for (std::size_t i = size_ / 2; i-- > 0;) sink(i, storage_[i]);
   }
 
+  /// The same of storage that lies in heap order. O(1)
+  void adopt() noexcept { size_ = storage_.size(); }
+
   void push(const T& item) noexcept {  ///< O(log n)
     PALPATE_ASSERT(size_ < storage_.size());
     std::size_t hole = size_++;

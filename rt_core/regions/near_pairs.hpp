@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
+#include "rt_core/base/queue.hpp"
 #include "rt_core/image/format.hpp"
 
 namespace palpate::regions {
@@ -24,30 +26,45 @@ struct Witness {
 
 /// How many pairs are kept of a region. A corner near a corner is as many as thirty pairs of
 /// triangles that share them; where more are as near as these, the rest is no farther than they.
-inline constexpr std::uint32_t kNearPairs = 32;
+inline constexpr std::uint32_t kNearPairs = 128;
 
-/// The nearest pairs met in a search, nearest first.
+/// The nearest pairs met in a search, in no order.
 struct NearPairs {
   std::uint32_t count = 0;
   Witness pairs[kNearPairs];
 
   /// @return where it has dropped a pair for want of room, the distance of the nearest such, else
-  /// `none`. O(kNearPairs).
+  /// `none`. O(1), and O(log kNearPairs) where there is no room.
   float add(const Witness& pair, float none) noexcept {
-    float dropped = none;
-    if (count == kNearPairs) {
-      const float last = pairs[count - 1].distance;
-      if (!(pair.distance < last)) return pair.distance;
-      dropped = last;
-      --count;
+    MinQueue<Witness, Farther> farthest_first{std::span<Witness>(pairs)};
+    if (count < kNearPairs) {
+      pairs[count++] = pair;
+      if (count == kNearPairs) farthest_first.fill();
+      return none;
     }
-    std::uint32_t hole = count++;
-    for (; hole > 0 && pair.distance < pairs[hole - 1].distance; --hole) {
-      pairs[hole] = pairs[hole - 1];
-    }
-    pairs[hole] = pair;
+    farthest_first.adopt();
+    const float dropped = farthest_first.top().distance;
+    if (!(pair.distance < dropped)) return pair.distance;
+    farthest_first.pop();
+    farthest_first.push(pair);
     return dropped;
   }
+
+  /// @param none  where there is no pair
+  [[nodiscard]] float least(float none) const noexcept {
+    float least = none;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      least = pairs[k].distance < least ? pairs[k].distance : least;
+    }
+    return least;
+  }
+
+ private:
+  struct Farther {
+    bool operator()(const Witness& a, const Witness& b) const noexcept {
+      return a.distance > b.distance;
+    }
+  };
 };
 
 }  // namespace palpate::regions

@@ -111,7 +111,7 @@ Vec3d summed_force(const TickResult& r) {
 }
 
 TEST(RegionsFollow, force_is_near_the_exact_one_at_a_fortieth_of_its_work) {
-  constexpr std::uint64_t kUnits = 2000;
+  constexpr std::uint64_t kUnits = 1100;
   constexpr int kAll = 3 * kTicks;
   BakedScene exact = scene();
   BakedScene followed = scene();
@@ -126,7 +126,7 @@ TEST(RegionsFollow, force_is_near_the_exact_one_at_a_fortieth_of_its_work) {
     if (i >= kAll - kTicks) error_N += norm(summed_force(r) - summed_force(truth)) / kTicks;
   }
   EXPECT_GT(needed, 35 * kUnits * kAll);
-  EXPECT_LT(error_N, 0.2 * peak_N);  // searches alone: 0.56
+  EXPECT_LT(error_N, 0.2 * peak_N);  // searches alone, with 2,000 units: 0.56
 }
 
 /// An engine on which the tail of a tick takes a microsecond for each contact.
