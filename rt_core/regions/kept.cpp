@@ -54,18 +54,14 @@ struct Doubtful {
 
 Doubtful doubtful_of(const Work& work, const Active& item, double way) noexcept {
   const RegionState& state = work.state_of(item);
-  const std::uint32_t count = state.near.count;
   const float upper = work.upper_of(item);
   const float nearest = upper + static_cast<float>(way + kMotionSlack);
-  bool may_be_nearer[kNearPairs];  // all at once: most are not
-  for (std::uint32_t k = 0; k < count; ++k) may_be_nearer[k] = state.apart[k] < nearest;
   Doubtful doubtful;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    if (!may_be_nearer[k]) continue;
+  for (std::uint32_t k = 0; k < state.near.count; ++k) {
     const Witness& pair = state.near.pairs[k];
-    if (pair.distance - item.moved < upper && !pair.same_pair(state.witness)) {
+    if (pair.distance - item.moved >= upper) break;
+    if (state.apart[k] < nearest && !pair.same_pair(state.witness))
       doubtful.of[doubtful.count++] = k;
-    }
   }
   return doubtful;
 }
@@ -100,7 +96,7 @@ void sift(Work& work, const Active& item, double way, Doubtful& doubtful) noexce
   doubtful.count = left;
 }
 
-/// Where the budget ends this, the others count as not kept.
+/// Where the budget ends this, the others count as not kept: the next is the nearest of them.
 void measure(Work& work, std::uint32_t index, const Doubtful& doubtful,
              PairBatch<Measured>& batch) noexcept {
   Active& item = work.active()[index];

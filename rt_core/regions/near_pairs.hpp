@@ -28,7 +28,7 @@ struct Witness {
 /// triangles that share them; where more are as near as these, the rest is no farther than they.
 inline constexpr std::uint32_t kNearPairs = 128;
 
-/// The nearest pairs met in a search, in no order.
+/// The nearest pairs met in a search, in no order until they are sorted.
 struct NearPairs {
   std::uint32_t count = 0;
   Witness pairs[kNearPairs];
@@ -50,13 +50,15 @@ struct NearPairs {
     return dropped;
   }
 
-  /// @param none  where there is no pair
-  [[nodiscard]] float least(float none) const noexcept {
-    float least = none;
-    for (std::uint32_t k = 0; k < count; ++k) {
-      least = pairs[k].distance < least ? pairs[k].distance : least;
+  /// Nearest first. O(n log n).
+  void sort() noexcept {
+    MinQueue<Witness, Farther> farthest_first{std::span<Witness>(pairs, count)};
+    farthest_first.fill();
+    for (std::uint32_t left = count; left > 0; --left) {
+      const Witness farthest = farthest_first.top();
+      farthest_first.pop();
+      pairs[left - 1] = farthest;
     }
-    return least;
   }
 
  private:

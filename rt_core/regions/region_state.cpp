@@ -33,7 +33,7 @@ double moved_since(const Stand& at, const levels::PairState& pair, std::uint32_t
 
 void prove(RegionState& state, const levels::PairState& pair, std::uint32_t region,
            float rest) noexcept {
-  const float nearest = state.near.least(kFarthest) - kRounding;
+  const float nearest = state.near.count > 0 ? state.near.pairs[0].distance - kRounding : rest;
   state.rest = rest;
   state.lower = nearest < rest ? nearest : rest;
   state.at = stand_of(pair, region);

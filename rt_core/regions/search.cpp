@@ -481,14 +481,19 @@ void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratc
 Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
               std::uint32_t region, const Witness& witness, const Reach& reach,
               Remainder* left) noexcept {
-  return Search(kernels, frame, scratch, pace, witness, reach, left).run(frame.a->regions[region]);
+  const Bounds found =
+      Search(kernels, frame, scratch, pace, witness, reach, left).run(frame.a->regions[region]);
+  scratch.near.sort();
+  return found;
 }
 
 Bounds go_on_searching(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
                        Pace& pace, const Witness& witness, const Reach& reach, double moved,
                        Remainder& left) noexcept {
-  return Search(kernels, frame, scratch, pace, witness, reach, &left)
-      .go_on(static_cast<float>(moved));
+  const Bounds found =
+      Search(kernels, frame, scratch, pace, witness, reach, &left).go_on(static_cast<float>(moved));
+  scratch.near.sort();
+  return found;
 }
 
 bool find_crossings(const Kernels& kernels, const levels::PairState& pair, const PairFrame& frame,

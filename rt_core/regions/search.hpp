@@ -40,7 +40,7 @@ inline constexpr std::uint32_t kMaxCandidates =
 /// Working memory of one search at a time; needs no initialisation.
 struct SearchScratch {
   KernelScratch kernel;
-  NearPairs near;  ///< of the last search()
+  NearPairs near;  ///< of the last search(), nearest first
   Candidate stack[kMaxCandidates];
   std::uint32_t batch_a[kBatch];
   std::uint32_t batch_b[kBatch];

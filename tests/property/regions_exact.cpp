@@ -149,8 +149,14 @@ constexpr double kRounding = 2e-7;  // of the distances of single triangles
 
 void expect_kept_or_beyond_rest(const regions::Bounds& found, const regions::NearPairs& near,
                                 double d) {
-  const double nearest_kept = double(near.least(regions::kFarthest)) - kRounding;
-  ASSERT_LE(std::min(double(found.rest), nearest_kept), d);
+  if (near.count > 0) {
+    ASSERT_LE(std::min(double(found.rest), double(near.pairs[0].distance) - kRounding), d);
+  } else {
+    ASSERT_LE(double(found.rest), d);
+  }
+  for (std::uint32_t i = 1; i < near.count; ++i) {
+    ASSERT_LE(near.pairs[i - 1].distance, near.pairs[i].distance);
+  }
 }
 
 TEST(RegionSearch, bounds_hold_wherever_the_budget_ends_it) {

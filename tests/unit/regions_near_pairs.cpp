@@ -40,7 +40,7 @@ TEST(RegionNearPairs, keep_the_nearest_and_tell_the_nearest_that_was_dropped) {
     const std::vector<float> distances = distances_of(near);
     ASSERT_EQ(distances.size(), kept);
     for (std::uint32_t k = 0; k < kept; ++k) ASSERT_EQ(distances[k], static_cast<float>(k + 1));
-    EXPECT_EQ(near.least(kFarthest), 1);
+
     EXPECT_EQ(dropped, count > kept ? static_cast<float>(kept + 1) : kFarthest);
   }
 }
@@ -55,7 +55,18 @@ TEST(RegionNearPairs, stay_with_their_distances) {
   }
 }
 
-TEST(RegionNearPairs, none_is_as_far_as_one_says) { EXPECT_EQ(NearPairs{}.least(0.5f), 0.5f); }
+TEST(RegionNearPairs, are_sorted_by_distance) {
+  for (const std::uint32_t count : {0u, 1u, 2u, kNearPairs - 1, 700u}) {
+    NearPairs near;
+    for (std::uint32_t i = 0; i < count; ++i) near.add(scattered(i, count), kFarthest);
+    near.sort();
+    ASSERT_EQ(near.count, std::min(count, kNearPairs));
+    for (std::uint32_t k = 0; k < near.count; ++k) {
+      EXPECT_EQ(near.pairs[k].distance, static_cast<float>(k + 1));
+      EXPECT_EQ(near.pairs[k].distance, scattered(near.pairs[k].a, count).distance);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace palpate::test
