@@ -74,7 +74,7 @@ void search_region(Work& work, Active& item, float tolerance, bool first) noexce
   const PairState& pair = work.pair_of(item);
   RegionState& state = work.state_of(item);
   const Reach reach{static_cast<float>(pair.delta) + kClosed, margin_within(work, item, tolerance),
-                    first};
+                    first, work.room};
   const std::uint64_t before = work.pace.used();
   const bool known = state.witness.known();
   const float upper = work.upper_of(item);

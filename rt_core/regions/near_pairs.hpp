@@ -24,22 +24,23 @@ struct Witness {
   [[nodiscard]] bool same_pair(const Witness& w) const noexcept { return a == w.a && b == w.b; }
 };
 
-/// How many pairs are kept of a region. A corner near a corner is as many as thirty pairs of
-/// triangles that share them; where more are as near as these, the rest is no farther than they.
+/// How many pairs are kept of a region, at most. A corner near a corner is as many as thirty pairs
+/// of triangles that share them; where more are as near as these, the rest is no farther than they.
 inline constexpr std::uint32_t kNearPairs = 128;
 
 /// The nearest pairs met in a search, in no order until they are sorted.
 struct NearPairs {
   std::uint32_t count = 0;
+  std::uint32_t room = kNearPairs;  ///< 1 to kNearPairs
   Witness pairs[kNearPairs];
 
   /// @return where it has dropped a pair for want of room, the distance of the nearest such, else
-  /// `none`. O(1), and O(log kNearPairs) where there is no room.
+  /// `none`. O(1), and O(log room) where there is none; O(room) once.
   float add(const Witness& pair, float none) noexcept {
-    MinQueue<Witness, Farther> farthest_first{std::span<Witness>(pairs)};
-    if (count < kNearPairs) {
+    MinQueue<Witness, Farther> farthest_first{std::span<Witness>(pairs, room)};
+    if (count < room) {
       pairs[count++] = pair;
-      if (count == kNearPairs) farthest_first.fill();
+      if (count == room) farthest_first.fill();
       return none;
     }
     farthest_first.adopt();

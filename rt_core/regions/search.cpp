@@ -73,6 +73,7 @@ class Search {
     out_.best = given_ = witness;
     best_squared_ = witness.known() ? witness.distance * witness.distance : kFar;
     scratch_.near.count = 0;
+    scratch_.near.room = reach.room;
     if (witness.known()) scratch_.near.add(witness, 0);
     lower_threshold();
   }

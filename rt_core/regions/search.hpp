@@ -159,7 +159,8 @@ struct Reach {
   float limit = 0;  ///< distances from here on are of no interest
   float margin =
       0;  ///< pairs farther than the nearest by less are kept; < 0: so much may be missed
-  bool first = false;  ///< end as soon as any pair nearer than limit is known
+  bool first = false;               ///< end as soon as any pair nearer than limit is known
+  std::uint32_t room = kNearPairs;  ///< pairs that are kept, at most
 };
 
 /// Depth-first search of both trees, nearest child first: what is not nearer than

@@ -12,7 +12,11 @@ namespace palpate::regions {
 
 struct Work {
   Work(QueryMemory& query_memory, const Demand& query_demand, Meter& query_meter) noexcept
-      : memory(query_memory), demand(query_demand), meter(query_meter), pace(query_meter) {}
+      : memory(query_memory),
+        demand(query_demand),
+        meter(query_meter),
+        pace(query_meter),
+        room(room_within(units_of_tick())) {}
 
   [[nodiscard]] std::span<Active> active() const noexcept { return memory.active.first(count); }
   [[nodiscard]] levels::PairState& pair_of(const Active& item) const noexcept {
@@ -56,6 +60,16 @@ struct Work {
     return meter.queries_in_all(unit_ns > 0 ? unit_ns : kAssumedUnit_ns);
   }
 
+  /// What is kept is measured in the ticks to come, and what is not ends a search sooner: of a
+  /// region no more than a tick of so many units does for.
+  static std::uint32_t room_within(double units) noexcept {
+    constexpr double kUnitsForEach = 16;
+    constexpr std::uint32_t kLeast = 32;  // a corner near a corner
+    const double room = units / kUnitsForEach;
+    if (room < kLeast) return kLeast;
+    return room < kNearPairs ? static_cast<std::uint32_t>(room) : kNearPairs;
+  }
+
   /// Until pace.no_limit(), of what the tick has left no more than this share.
   void limit_to(double share) noexcept {
     constexpr double kEndless = 1e18;
@@ -73,6 +87,7 @@ struct Work {
   Demand demand;
   Meter& meter;
   Pace pace;
+  std::uint32_t room;          ///< pairs that are kept of a region, at most
   std::uint32_t count = 0;     ///< of active regions
   std::uint32_t searches = 0;  ///< of whole regions, completed
   bool swept = false;          ///< nothing was known when the tick began (sweep.hpp)

@@ -45,6 +45,14 @@ TEST(RegionNearPairs, keep_the_nearest_and_tell_the_nearest_that_was_dropped) {
   }
 }
 
+TEST(RegionNearPairs, are_no_more_than_there_is_room_for) {
+  NearPairs near;
+  near.room = 10;
+  for (std::uint32_t i = 0; i < 100; ++i) near.add(scattered(i, 100), kFarthest);
+  const std::vector<float> kept = distances_of(near);
+  EXPECT_EQ(kept, std::vector<float>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
+}
+
 TEST(RegionNearPairs, stay_with_their_distances) {
   NearPairs near;
   for (std::uint32_t i = 0; i < 500; ++i) near.add(scattered(i, 500), kFarthest);
