@@ -43,6 +43,7 @@ bool sweep_if_lost(Work& work, std::uint32_t index) noexcept {
   if (!pair.fresh && last_motion(pair) <= far) return false;
   pair.fresh = false;
   work.swept = true;
+  work.room = Work::kLeastRoom;  // there is much to search, and how the bodies move is not known
   memory.containment[index].doubtful = true;
   memory.pursuit.surveyed = 1;  // what a survey had left of another place is none of this one
   const std::span<float> swept = memory.swept.first(pair.image_a->regions.size());

@@ -11,6 +11,8 @@
 namespace palpate::regions {
 
 struct Work {
+  static constexpr std::uint32_t kLeastRoom = 32;  ///< a corner near a corner
+
   Work(QueryMemory& query_memory, const Demand& query_demand, Meter& query_meter) noexcept
       : memory(query_memory),
         demand(query_demand),
@@ -64,9 +66,8 @@ struct Work {
   /// region no more than a tick of so many units does for.
   static std::uint32_t room_within(double units) noexcept {
     constexpr double kUnitsForEach = 16;
-    constexpr std::uint32_t kLeast = 32;  // a corner near a corner
     const double room = units / kUnitsForEach;
-    if (room < kLeast) return kLeast;
+    if (room < kLeastRoom) return kLeastRoom;
     return room < kNearPairs ? static_cast<std::uint32_t>(room) : kNearPairs;
   }
 
