@@ -69,7 +69,7 @@ class Narrowing {
   explicit Narrowing(Work& work) noexcept : work_(work), pursuit_(work.memory.pursuit) {}
 
   void run() noexcept {
-    share_tolerance();
+    weigh();
     if (work_.swept && work_.demand.limited && work_.count > 0) survey_where_far_to_go();
     begun_ = worth_taking_up();
     narrow_widest(work_.demand.limited && !lags_);
@@ -87,9 +87,9 @@ class Narrowing {
  private:
   /// A region whose share of a tolerance is larger is searched less often. While intervals grow
   /// alike, all searches together are cheapest with shares in proportion to the root of what a
-  /// search costs: least sum of cost / share for a given sum of shares.
-  void share_tolerance() noexcept {
-    if (work_.demand.tolerance_m <= 0) return;
+  /// search costs: least sum of cost / share for a given sum of shares. Without a tolerance the
+  /// shares order what is left to prove (Work::worth()).
+  void weigh() noexcept {
     float sum = 0;
     float known = 0;
     for (const Active& item : work_.active()) {

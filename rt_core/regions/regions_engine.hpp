@@ -41,7 +41,7 @@ struct Active {
   float rest = 0;     ///< at the present poses
   float moved = 0;    ///< since the proof, at most
   float width = 0;    ///< min(witness, delta) - rest: what its force may still change by
-  float weight = 1;   ///< its part of a tolerance, of which the mean is 1
+  float weight = 1;   ///< the root of what a search of it costs, of which the mean is 1
   float urgency = 0;  ///< the larger, the sooner it is looked at
   Way way;            ///< of the witness as this tick has found it
   std::uint32_t state = 0;

@@ -7,6 +7,10 @@ namespace {
 /// What may cross the other body goes first, as if its interval were wider by so many delta: how
 /// deep it would be is not in it. Not after a jump, when nothing is known of anything.
 constexpr float kMayCross = 1;
+/// Intervals narrower than this, in delta, change the force little: of those, under a budget, what
+/// costs least to prove goes first, so that the certificate gains most. None of them goes before a
+/// wider one.
+constexpr float kNarrow = 0.2f;
 /// What is not felt, because others beside it are, goes last.
 constexpr float kNotFelt = 1e-3f;
 /// After a jump nearly everything is open, and what is deepest decides the force: a contact counts
@@ -24,13 +28,21 @@ float Work::weight_after_jump(const Active& item) const noexcept {
   return (item.climbed ? 1 : kNotClimbed) * (kShallow + depth * depth);
 }
 
+float Work::worth(const Active& item) const noexcept {
+  const float weighted = item.width / item.weight;
+  if (demand.tolerance_m > 0) return weighted;
+  const float narrow = kNarrow * delta_of(item);
+  if (item.width >= narrow) return item.width;
+  return weighted < narrow ? weighted : narrow;
+}
+
 void Work::widen(Active& item) noexcept {
   const float upper = upper_of(item);
   item.width = upper > item.rest ? upper - (item.rest > 0 ? item.rest : 0) : 0;
   const bool unknown = is_felt(item) || !witness_of(item).known();
   const bool may_cross = demand.limited && !swept && item.rest <= 0 && unknown;
   const float doubt = may_cross ? kMayCross * delta_of(item) : 0;
-  item.urgency = item.width > kClosed ? (item.width + doubt) / item.weight : 0;
+  item.urgency = item.width > kClosed ? worth(item) + doubt : 0;
   if (swept && demand.limited) item.urgency *= weight_after_jump(item);
   if (!is_present(item)) item.urgency *= kNotFelt;
 }

@@ -64,7 +64,7 @@ const Case kCases[] = {
     {"regions, 100 units",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      100,
-     0x18080d4a3d64e733},
+     0x7ca13b2d98abc8c7},
     {"regions, 60 units, slowly",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      60,
