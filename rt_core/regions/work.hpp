@@ -81,7 +81,8 @@ struct Work {
   /// A region whose bounds have changed: sets its width and urgency.
   void widen(Active& item) noexcept;
   void widen_all() noexcept;
-  /// Of its interval in the order of a tick: by what it is wide, or has of a tolerance, or costs.
+  /// Of an interval in the order of a tick: its width, with a tolerance or where it is narrow over
+  /// what a search of it costs.
   [[nodiscard]] float worth(const Active& item) const noexcept;
   /// By what to multiply that after a jump.
   [[nodiscard]] float weight_after_jump(const Active& item) const noexcept;
