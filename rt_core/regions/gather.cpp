@@ -163,6 +163,7 @@ void gather(Work& work) noexcept {
   measure_witnesses(work);
   measure_kept(work);
   thin_out(work);
+  work.weigh_all();
   work.widen_all();
 }
 

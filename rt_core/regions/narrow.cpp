@@ -69,7 +69,6 @@ class Narrowing {
   explicit Narrowing(Work& work) noexcept : work_(work), pursuit_(work.memory.pursuit) {}
 
   void run() noexcept {
-    weigh();
     if (work_.swept && work_.demand.limited && work_.count > 0) survey_where_far_to_go();
     begun_ = worth_taking_up();
     narrow_widest(work_.demand.limited && !lags_);
@@ -85,24 +84,6 @@ class Narrowing {
   }
 
  private:
-  /// A region whose share of a tolerance is larger is searched less often. While intervals grow
-  /// alike, all searches together are cheapest with shares in proportion to the root of what a
-  /// search costs: least sum of cost / share for a given sum of shares. Without a tolerance the
-  /// shares order what is left to prove (Work::worth()).
-  void weigh() noexcept {
-    float sum = 0;
-    float known = 0;
-    for (const Active& item : work_.active()) {
-      sum += sqrt_of(cost_of(item));
-      known += cost_of(item) > 0 ? 1.0f : 0.0f;
-    }
-    for (Active& item : work_.active()) {
-      const float cost = cost_of(item);
-      if (cost > 0) item.weight = sqrt_of(cost) * known / sum;
-      work_.widen(item);
-    }
-  }
-
   /// An interval may stay open by this much, but not down to zero: what crosses has a depth, of
   /// which the interval says nothing.
   float share_of(const Active& item) noexcept {

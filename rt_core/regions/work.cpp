@@ -47,6 +47,20 @@ void Work::widen(Active& item) noexcept {
   if (!is_present(item)) item.urgency *= kNotFelt;
 }
 
+void Work::weigh_all() noexcept {
+  float sum = 0;
+  float known = 0;
+  for (const Active& item : active()) {
+    const float cost = state_of(item).cost;
+    sum += sqrt_of(cost);
+    known += cost > 0 ? 1.0f : 0.0f;
+  }
+  for (Active& item : active()) {
+    const float cost = state_of(item).cost;
+    if (cost > 0) item.weight = sqrt_of(cost) * known / sum;
+  }
+}
+
 void Work::widen_all() noexcept {
   for (Active& item : active()) widen(item);
 }

@@ -81,6 +81,11 @@ struct Work {
   /// A region whose bounds have changed: sets its width and urgency.
   void widen(Active& item) noexcept;
   void widen_all() noexcept;
+  /// A region whose share of a tolerance is larger is searched less often. While intervals grow
+  /// alike, all searches together are cheapest with shares in proportion to the root of what a
+  /// search costs: least sum of cost / share for a given sum of shares. Without a tolerance the
+  /// shares order what is left to prove (worth()).
+  void weigh_all() noexcept;
   /// Of an interval in the order of a tick: its width, with a tolerance or where it is narrow over
   /// what a search of it costs.
   [[nodiscard]] float worth(const Active& item) const noexcept;

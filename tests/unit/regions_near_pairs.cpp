@@ -40,7 +40,6 @@ TEST(RegionNearPairs, keep_the_nearest_and_tell_the_nearest_that_was_dropped) {
     const std::vector<float> distances = distances_of(near);
     ASSERT_EQ(distances.size(), kept);
     for (std::uint32_t k = 0; k < kept; ++k) ASSERT_EQ(distances[k], static_cast<float>(k + 1));
-
     EXPECT_EQ(dropped, count > kept ? static_cast<float>(kept + 1) : kFarthest);
   }
 }
