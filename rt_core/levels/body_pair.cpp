@@ -8,7 +8,26 @@ Vec3d centre_in_body(const ImageView& image) noexcept {
   return {image.header->centre_m[0], image.header->centre_m[1], image.header->centre_m[2]};
 }
 
+/// a to b.
+Trail inverse(const RelativePose& b_in_a) noexcept {
+  const Mat3d back = transpose(b_in_a.rotation);
+  return {back, -(back * b_in_a.translation)};
+}
+
+Vec3d mixed(Vec3d from, Vec3d to) noexcept {
+  constexpr double kShare = 1 / (kTrailTicks + 1);
+  return from + kShare * (to - from);
+}
+
+Trail mixed(const Trail& from, const Trail& to) noexcept {
+  return {{mixed(from.rotation.row0, to.rotation.row0), mixed(from.rotation.row1, to.rotation.row1),
+           mixed(from.rotation.row2, to.rotation.row2)},
+          mixed(from.translation, to.translation)};
+}
+
 }  // namespace
+
+void leave_no_trail(PairState& pair) noexcept { pair.trail = inverse(pair.b_in_a); }
 
 void move(PairState& pair, const Pose& a, const Pose& b) noexcept {
   const Mat3d rotation_a = rotation(a.orientation);
@@ -38,6 +57,7 @@ void move(PairState& pair, const Pose& a, const Pose& b) noexcept {
   pair.b_in_a = now;
   pair.rotation_a = rotation_a;
   pair.centre_a_m = centre_a;
+  pair.trail = pair.placed ? mixed(pair.trail, inverse(now)) : inverse(now);
   pair.placed = true;
 }
 

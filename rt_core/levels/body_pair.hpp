@@ -11,6 +11,13 @@
 
 namespace palpate::levels {
 
+/// Where the points x of a have been of late, in the coordinates of b: at rotation * x +
+/// translation on the mean of the ticks so far, the last ones counting most.
+struct Trail {
+  Mat3d rotation{};
+  Vec3d translation{};
+};
+
 /// Lengths are in units of the larger body's radius, so that micrometre parts and kilometre
 /// terrains are the same numbers. The coordinates of a body have their origin at its centre.
 struct PairState {
@@ -45,10 +52,16 @@ struct PairState {
   double turn = 0;
   double last_travel = 0;  ///< of the last move
   double last_turn = 0;
+  Trail trail;
 };
 
 /// Sets the poses of this tick (unit quaternions) and advances the odometers.
 void move(PairState& pair, const Pose& a, const Pose& b) noexcept;
+
+/// Of how many ticks ago the trail is, in steady motion.
+inline constexpr double kTrailTicks = 3;
+/// Forgets the way that led here, as after a jump.
+void leave_no_trail(PairState& pair) noexcept;
 
 /// A point of a's coordinates in those of b.
 inline Vec3d to_b(const PairState& pair, Vec3d point) noexcept {

@@ -24,15 +24,15 @@ PALPATE_LANES void turn(const Box& from, const float* row, float (&to)[4]) noexc
 #endif
 }
 
-/// A box in the coordinates of the node.
-PALPATE_LANES Box mapped(const Box& box, const Transform& map) noexcept {
+/// A box in the coordinates of the node, half way along a course.
+PALPATE_LANES Box mapped(const Box& box, const Transform& map, Vec3f half) noexcept {
   Box out;
   turn(box, map.rotation, out.x);
   turn(box, map.rotation + 3, out.y);
   turn(box, map.rotation + 6, out.z);
-  out.x[3] = map.scale * out.x[3] + map.translation[0];
-  out.y[3] = map.scale * out.y[3] + map.translation[1];
-  out.z[3] = map.scale * out.z[3] + map.translation[2];
+  out.x[3] = map.scale * out.x[3] + map.translation[0] + half.x;
+  out.y[3] = map.scale * out.y[3] + map.translation[1] + half.y;
+  out.z[3] = map.scale * out.z[3] + map.translation[2] + half.z;
   out.half[0] = map.scale * box.half[0];
   out.half[1] = map.scale * box.half[1];
   out.half[2] = map.scale * box.half[2];
@@ -53,13 +53,15 @@ PALPATE_LANES Vectors centres_apart(const Box& box, const image::RegionNode& nod
 }
 
 /// Bounds of sixteen boxes, a part of them at a time, squared.
-PALPATE_LANES Floats box_lanes(const Box& box, const image::RegionNode& node, int lane) noexcept {
+/// @param half  from the box to both ends of its course
+PALPATE_LANES Floats box_lanes(const Box& box, Vec3f half, const image::RegionNode& node,
+                               int lane) noexcept {
   const Vectors axis[3] = {
       {load(node.axes[0] + lane), load(node.axes[1] + lane), load(node.axes[2] + lane)},
       {load(node.axes[3] + lane), load(node.axes[4] + lane), load(node.axes[5] + lane)},
       {load(node.axes[6] + lane), load(node.axes[7] + lane), load(node.axes[8] + lane)}};
-  const Floats half[3] = {load(node.half[0] + lane), load(node.half[1] + lane),
-                          load(node.half[2] + lane)};
+  const Floats halves[3] = {load(node.half[0] + lane), load(node.half[1] + lane),
+                            load(node.half[2] + lane)};
   const Vectors apart = centres_apart(box, node, lane);
   Floats cosine[3][3];  // of the node's axis and the single box's, sizes only
   for (int i = 0; i < 3; ++i) {
@@ -69,13 +71,16 @@ PALPATE_LANES Floats box_lanes(const Box& box, const image::RegionNode& node, in
   }
   const auto along_box = [&](int k) {
     const Floats between = apart.x * box.x[k] + apart.y * box.y[k] + apart.z * box.z[k];
-    const Floats of_node = cosine[0][k] * half[0] + cosine[1][k] * half[1] + cosine[2][k] * half[2];
-    return gap_squared(between, of_node, all(box.half[k]));
+    const Floats of_node =
+        cosine[0][k] * halves[0] + cosine[1][k] * halves[1] + cosine[2][k] * halves[2];
+    const float along = half.x * box.x[k] + half.y * box.y[k] + half.z * box.z[k];
+    return gap_squared(between, of_node, all(box.half[k] + __builtin_fabsf(along)));
   };
   const auto along_node = [&](int i) {
     const Floats of_box =
         cosine[i][0] * box.half[0] + cosine[i][1] * box.half[1] + cosine[i][2] * box.half[2];
-    return gap_squared(dot(axis[i], apart), of_box, half[i]);
+    const Floats along = magnitude(axis[i].x * half.x + axis[i].y * half.y + axis[i].z * half.z);
+    return gap_squared(dot(axis[i], apart), of_box + along, halves[i]);
   };
   return most(along_box(0) + along_box(1) + along_box(2),
               along_node(0) + along_node(1) + along_node(2));
@@ -92,12 +97,14 @@ PALPATE_LANES Ints key_of(Floats squared, Vectors centres, int lane) noexcept {
   return ((squared > Floats{} ? apart : overlap) & ~kLast) | (kLast - lane - counting());
 }
 
-std::uint32_t test_boxes(const Box& box, const Transform& to_node, const image::RegionNode& node,
-                         float unit2, float below, BoxTest& out) noexcept {
-  const Box here = mapped(box, to_node);
+std::uint32_t test_boxes(const Box& box, const Transform& to_node, Vec3f course,
+                         const image::RegionNode& node, float unit2, float below,
+                         BoxTest& out) noexcept {
+  const Vec3f half = 0.5f * course;
+  const Box here = mapped(box, to_node, half);
   std::uint32_t near = 0;
   for (int lane = 0; lane < kWidth; lane += kLanes) {
-    const Floats squared = box_lanes(here, node, lane) * all(unit2);
+    const Floats squared = box_lanes(here, half, node, lane) * all(unit2);
     const Ints is_near = squared < all(below);
     store(squared, out.squared + lane);
     store(least(is_near ? all(kFar) : squared, load(out.passed + lane)), out.passed + lane);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/close.hpp"
 
+#include "rt_core/regions/course.hpp"
 #include "rt_core/regions/motion.hpp"
 
 namespace palpate::regions {
@@ -15,6 +16,10 @@ constexpr float kLastStep = 0.1f;
 /// Where an interval may stay open, a search leaves this share of that to motion, unless it is
 /// fast.
 constexpr float kRestShare = 0.75f;
+/// Where there is no room for what comes near on a region's course, the next one is so much
+/// shorter, and where there is again, longer.
+constexpr float kShorter = 0.5f;
+constexpr float kLonger = 1.2f;
 /// Neighbours of a witness farther than this many delta are not looked at.
 constexpr float kClimbReach = 2;
 
@@ -33,7 +38,7 @@ float margin_within(const Work& work, const Active& item, float tolerance) noexc
 
 /// Searches a region from where a tick before had to leave off, or from the start. What the budget
 /// leaves of it is kept, unless another search is.
-Bounds search_on(Work& work, const Active& item, const Reach& reach) noexcept {
+Bounds search_on(Work& work, const Active& item, const Reach& reach, Vec3d course) noexcept {
   QueryMemory& memory = work.memory;
   Unfinished& kept = *memory.unfinished;
   const bool begun = kept.state == item.state;
@@ -57,28 +62,30 @@ Bounds search_on(Work& work, const Active& item, const Reach& reach) noexcept {
     ++work.searches;
   } else if (begun || (!has_first && !kept.any())) {
     kept.state = item.state;
-    kept.at = stand_of(pair, item.region);
+    kept.at = stand_of(pair, item.region, course);
     kept.spent = spent;
   }
   return found;
 }
 
+Vec3f in_image(const PairState& pair, Vec3d way) noexcept {
+  return vec_cast<float>((1 / pair.scale_b) * way);
+}
+
 /// @param first  ends as soon as a pair nearer than delta is known
-void search_region(Work& work, Active& item, float tolerance, bool first) noexcept {
-  if (item.width <= kClosed && item.width <= tolerance) return;
-  if (!work.pace.go_on()) {
-    work.truncated = true;
-    return;
-  }
+/// @return whether it has seen all of the region
+bool search_along(Work& work, Active& item, float tolerance, bool first,
+                  const Course& course) noexcept {
   QueryMemory& memory = work.memory;
   const PairState& pair = work.pair_of(item);
   RegionState& state = work.state_of(item);
-  const Reach reach{static_cast<float>(pair.delta) + kClosed, margin_within(work, item, tolerance),
-                    first, work.room};
+  const Reach reach{static_cast<float>(pair.delta) + kClosed,
+                    margin_within(work, item, tolerance) + course.away, first, work.room,
+                    in_image(pair, course.way)};
   const std::uint64_t before = work.pace.used();
   const bool known = state.witness.known();
   const float upper = work.upper_of(item);
-  const Bounds found = search_on(work, item, reach);
+  const Bounds found = search_on(work, item, reach, course.way);
   const auto spent = static_cast<double>(work.pace.used() - before);
   state.witness = found.best;
   if (known) {
@@ -90,9 +97,35 @@ void search_region(Work& work, Active& item, float tolerance, bool first) noexce
     item.rest = found.rest;
     item.moved = 0;
     state.near = memory.search->near;
-    prove(state, pair, item.region, found.rest);
+    prove(state, pair, item.region, found.rest, course.way);
   }
   work.widen(item);
+  return found.complete;
+}
+
+Course course_of(const Work& work, const Active& item) noexcept {
+  const Unfinished& kept = *work.memory.unfinished;
+  return kept.state == item.state ? course_left(work, item, kept.at) : course_ahead(work, item);
+}
+
+/// @param first  as search_along()
+void search_region(Work& work, Active& item, float tolerance, bool first) noexcept {
+  if (item.width <= kClosed && item.width <= tolerance) return;
+  if (!work.pace.go_on()) {
+    work.truncated = true;
+    return;
+  }
+  const Course course = first ? Course{} : course_of(work, item);
+  const bool complete = search_along(work, item, tolerance, first, course);
+  if (first || !complete || squared_norm(course.way) == 0) return;
+  float& ahead = work.state_of(item).ahead;
+  if (item.width > tolerance && item.width > kClosed) {
+    // More comes near on the way than there is room for: of the present place alone, all is kept.
+    ahead *= kShorter;
+    search_along(work, item, tolerance, false, {});
+  } else if (ahead < 1) {
+    ahead *= kLonger;
+  }
 }
 
 void climb_from_witness(Work& work, Active& item) noexcept {

@@ -42,6 +42,7 @@ bool sweep_if_lost(Work& work, std::uint32_t index) noexcept {
   const double far = kJumpDelta * pair.delta > kJump ? kJumpDelta * pair.delta : kJump;
   if (!pair.fresh && last_motion(pair) <= far) return false;
   pair.fresh = false;
+  leave_no_trail(pair);
   work.swept = true;
   work.room = Work::kLeastRoom;  // there is much to search, and how the bodies move is not known
   memory.containment[index].doubtful = true;

@@ -69,10 +69,12 @@ struct Kernels {
   /// large by at most 1e-6 of the farther box's distance from the origin. Fills all lanes; those
   /// beyond the last child repeat the first. Of boxes that overlap the nearer is the one whose
   /// centre is; of two as near to some 2e-6 the later.
+  /// @param course  the bounds hold for the box and for all its places on this way, which is in the
+  ///                node's coordinates; the room that it sweeps is bounded on the same axes
   /// @param unit2  squares of lengths in the node's image times this are in the unit of the bounds
   /// @param below  squared, in the unit of the bounds; nearer boxes are near
   /// @return bit i set where child i is near
-  std::uint32_t (*test_boxes)(const Box& box, const Transform& to_node,
+  std::uint32_t (*test_boxes)(const Box& box, const Transform& to_node, Vec3f course,
                               const image::RegionNode& node, float unit2, float below,
                               BoxTest& out) noexcept;
 
@@ -91,6 +93,15 @@ struct Kernels {
                                  const Transform& a_to_b, KernelScratch& scratch,
                                  float (&out_squared)[kBatch],
                                  float (&out_apart)[3][kBatch]) noexcept;
+
+  /// The same distances, and bounds from below, squared, of those while a goes a course, which is
+  /// in the coordinates of b's image: how far the pairs are apart along their ways now, less what
+  /// of the course goes against these.
+  std::uint32_t (*triangle_courses)(const image::RegionTriangle* const (&a)[kBatch],
+                                    const image::RegionTriangle* const (&b)[kBatch],
+                                    const Transform& a_to_b, Vec3f course, KernelScratch& scratch,
+                                    float (&out_squared)[kBatch],
+                                    float (&out_least)[kBatch]) noexcept;
 
   /// How far kBatch pairs of triangles are apart along a direction, at which every a lies beyond b;
   /// below 0 where they overlap along it. In the unit of b's image, as the direction of length 1,

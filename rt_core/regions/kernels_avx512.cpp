@@ -10,8 +10,9 @@
 namespace palpate::regions {
 
 const Kernels* kernels_avx512() noexcept {
-  static constexpr Kernels kTable = {"avx512",      test_boxes,  triangle_distances,
-                                     triangle_ways, separations, witnesses};
+  static constexpr Kernels kTable = {"avx512",      test_boxes,       triangle_distances,
+                                     triangle_ways, triangle_courses, separations,
+                                     witnesses};
   return &kTable;
 }
 

@@ -7,8 +7,9 @@
 namespace palpate::regions {
 
 const Kernels* kernels_scalar() noexcept {
-  static constexpr Kernels kTable = {"scalar",      test_boxes,  triangle_distances,
-                                     triangle_ways, separations, witnesses};
+  static constexpr Kernels kTable = {"scalar",      test_boxes,       triangle_distances,
+                                     triangle_ways, triangle_courses, separations,
+                                     witnesses};
   return &kTable;
 }
 

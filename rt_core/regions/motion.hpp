@@ -12,11 +12,11 @@ inline double last_motion(const levels::PairState& pair) noexcept {
 }
 
 /// Pairs that are farther than the nearest by less than this, in units, are kept, and so the region
-/// needs no search for a few ticks: for six of the present motion, but at most for a share of
-/// delta, for what is farther costs more than the rest saves; and not at all where that is no more
-/// than three ticks.
+/// needs no search until it is so far off its course (course.hpp): by four ticks of the present
+/// motion, but at most by a share of delta, for what is farther costs more than the rest saves; and
+/// not at all where that is no more than three ticks.
 inline double margin_of(const levels::PairState& pair) noexcept {
-  constexpr double kRestTicks = 6;
+  constexpr double kRestTicks = 4;
   constexpr double kFewestTicks = 3;
   constexpr double kMostRest = 0.4;
   constexpr double kLeastRest = 0.01;

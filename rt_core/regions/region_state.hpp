@@ -13,18 +13,20 @@ namespace palpate::regions {
 /// Rounding of the centres and of the odometers, in units.
 inline constexpr double kMotionSlack = 1e-9;
 
-/// Where a region stood when something was proved of it.
+/// Where a region stood when something was proved of it, and the way from there along which the
+/// proof holds as well.
 struct Stand {
   Vec3d centre{};     ///< in the coordinates of b
+  Vec3d course{};     ///< likewise; 0: it holds there only
   double travel = 0;  ///< PairState::travel
   double turn = 0;    ///< PairState::turn
 };
 
 /// What is kept of a region from tick to tick. Lengths in units of the pair.
 ///
-/// The proof: when the region stood `at`, every pair of its triangles and b's was in `near`, or at
-/// least `rest` apart. Since then no distance has shrunk by more than the region has moved
-/// (moved_since()).
+/// The proof: while the region is on its course, turned as it was where it stood `at`, every pair
+/// of its triangles and b's is in `near`, or at least `rest` apart. No distance is less than on the
+/// course by more than the region is off it (moved_since()).
 struct RegionState {
   float rest = 0;
   float lower = 0;  ///< the least of `rest` and of the distances of `near`
@@ -34,16 +36,24 @@ struct RegionState {
   Witness witness;
   double active_at = 0;  ///< way_of() in that tick
   float cost = 0;        ///< work units of the last search of all of it; 0: not known
-  NearPairs near;
+  float ahead = 1;       ///< share of the ticks for which it is given a course (course.hpp)
+  NearPairs near;        ///< with their least distances on the course, or less
   /// Of each of `near`: its distance when it was last measured, and the way since the proof then.
   float apart[kNearPairs];
   Seeds seeds;  ///< other places of it that are followed (follow.hpp)
 };
 
-[[nodiscard]] Stand stand_of(const levels::PairState& pair, std::uint32_t region) noexcept;
+/// Of a region, in the coordinates of b.
+[[nodiscard]] Vec3d centre_of(const levels::PairState& pair, std::uint32_t region) noexcept;
 
-/// How far any point of a region has moved against b since it stood there, at most: the
-/// displacement of its centre, not the way it took, and its radius times all turns since.
+/// How far that moves in a tick, about: the mean of the last ticks.
+[[nodiscard]] Vec3d step_of(const levels::PairState& pair, std::uint32_t region) noexcept;
+
+[[nodiscard]] Stand stand_of(const levels::PairState& pair, std::uint32_t region,
+                             Vec3d course = {}) noexcept;
+
+/// How far any point of a region is from where it was on the region's course, at most: how far its
+/// centre is from the nearest place on that, and its radius times all turns since.
 [[nodiscard]] double moved_since(const Stand& at, const levels::PairState& pair,
                                  std::uint32_t region) noexcept;
 
@@ -61,9 +71,9 @@ struct RegionState {
          pair.turn * pair.scale_a * static_cast<double>(pair.image_a->regions[region].reach);
 }
 
-/// Proves at the present poses that the pairs which are not in state.near are at least `rest`
-/// apart.
-void prove(RegionState& state, const levels::PairState& pair, std::uint32_t region,
-           float rest) noexcept;
+/// Proves that from the present poses on, along a course, the pairs which are not in state.near are
+/// at least `rest` apart.
+void prove(RegionState& state, const levels::PairState& pair, std::uint32_t region, float rest,
+           Vec3d course = {}) noexcept;
 
 }  // namespace palpate::regions

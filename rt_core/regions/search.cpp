@@ -38,6 +38,15 @@ struct Batch {
   const RegionTriangle* b[kBatch];
 };
 
+/// A course of a in the coordinates of b's image, as that of b in those of a's.
+Vec3f course_of_b(const PairFrame& frame, Vec3f course) noexcept {
+  const Transform& map = frame.b_to_a;
+  const float* r = map.rotation;
+  return -map.scale * Vec3f{r[0] * course.x + r[1] * course.y + r[2] * course.z,
+                            r[3] * course.x + r[4] * course.y + r[5] * course.z,
+                            r[6] * course.x + r[7] * course.y + r[8] * course.z};
+}
+
 /// Distances of sixteen pairs at once, in units.
 std::uint32_t evaluate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
                        float (&out_squared)[kBatch]) noexcept {
@@ -63,18 +72,19 @@ class Search {
          const Witness& witness, const Reach& reach, Remainder* left = nullptr) noexcept
       : kernels_(kernels),
         frame_(frame),
-        trees_{{*frame.a, frame.b_to_a, frame.scale2_a}, {*frame.b, frame.a_to_b, frame.scale2_b}},
+        trees_{{*frame.a, frame.b_to_a, course_of_b(frame, reach.course), frame.scale2_a},
+               {*frame.b, frame.a_to_b, reach.course, frame.scale2_b}},
         scratch_(scratch),
         pace_(pace),
         reach_(reach),
-        left_(left) {
+        left_(left),
+        moves_(squared_norm(reach.course) > 0) {
     const float scale = frame.a_to_b.scale;
     volume_a_ = scale * scale * scale;
-    out_.best = given_ = witness;
+    out_.best = witness;
     best_squared_ = witness.known() ? witness.distance * witness.distance : kFar;
     scratch_.near.count = 0;
     scratch_.near.room = reach.room;
-    if (witness.known()) scratch_.near.add(witness, 0);
     lower_threshold();
   }
 
@@ -121,6 +131,7 @@ class Search {
   struct Tree {
     const ImageView& image;
     const Transform& to_here;
+    Vec3f course;  ///< of those boxes
     float scale2;  ///< squared units of its squared coordinates
   };
 
@@ -177,8 +188,9 @@ class Search {
     const Tree& tree = trees_[of_a ? 0 : 1];
     const RegionNode& parent = tree.image.region_nodes[node];
     pace_.charge(1);
-    std::uint32_t near = kernels_.test_boxes(box_of(over_other, slot_of(other)), tree.to_here,
-                                             parent, tree.scale2, threshold_squared_, test_);
+    std::uint32_t near =
+        kernels_.test_boxes(box_of(over_other, slot_of(other)), tree.to_here, tree.course, parent,
+                            tree.scale2, threshold_squared_, test_);
     if (parent.leaf != 0 && over_other.leaf != 0) {
       const std::uint32_t single = over_other.first + slot_of(other);
       for (; near != 0; near &= near - 1) {
@@ -218,17 +230,31 @@ class Search {
     fill_up(scratch_, pending_);
     pace_.charge(kBatchUnits);
     float squared[kBatch];
-    const std::uint32_t crossing = evaluate(kernels_, frame_, scratch_, squared);
-    if (crossings_ != nullptr) {
-      note_crossings(crossing);
-      pending_ = 0;
-      return;
+    if (moves_) {
+      float least[kBatch];
+      evaluate_along(squared, least);
+      keep_nearest(squared, least);
+    } else {
+      const std::uint32_t crossing = evaluate(kernels_, frame_, scratch_, squared);
+      if (crossings_ != nullptr) {
+        note_crossings(crossing);
+      } else {
+        keep_nearest(squared, squared);
+      }
     }
-    keep_nearest(squared);
     pending_ = 0;
   }
 
-  void keep_nearest(const float (&squared)[kBatch]) noexcept {
+  /// The same as evaluate(), and along the course at least.
+  void evaluate_along(float (&out_squared)[kBatch], float (&out_least)[kBatch]) noexcept {
+    const Batch pairs(frame_, scratch_);
+    kernels_.triangle_courses(pairs.a, pairs.b, frame_.a_to_b, reach_.course, scratch_.kernel,
+                              out_squared, out_least);
+    for (float& squared : out_squared) squared *= frame_.scale2_b;
+    for (float& squared : out_least) squared *= frame_.scale2_b;
+  }
+
+  void keep_nearest(const float (&squared)[kBatch], const float (&least)[kBatch]) noexcept {
     for (std::uint32_t i = 0; i < pending_; ++i) {
       if (squared[i] < best_squared_) {
         best_squared_ = squared[i];
@@ -237,13 +263,12 @@ class Search {
       }
     }
     for (std::uint32_t i = 0; i < pending_; ++i) {
-      if (squared[i] >= threshold_squared_) continue;
-      keep({scratch_.batch_a[i], scratch_.batch_b[i], sqrt_of(squared[i])});
+      if (least[i] >= threshold_squared_) continue;
+      keep({scratch_.batch_a[i], scratch_.batch_b[i], sqrt_of(least[i])});
     }
   }
 
   void keep(const Witness& pair) noexcept {
-    if (pair.same_pair(given_)) return;
     const float dropped = scratch_.near.add(pair, most_);
     if (dropped < most_) {
       most_ = dropped;
@@ -315,10 +340,10 @@ class Search {
   Pace& pace_;
   Reach reach_;
   Remainder* left_ = nullptr;  // null: what is left is not wanted
-  Witness given_;
-  float volume_a_ = 1;      // a's unit of volume, in b's
-  float seen_ = kFarthest;  // pairs that were seen before, and not kept, are no nearer
-  float most_ = kFarthest;  // pairs from here on have been dropped
+  bool moves_;                 // along a course
+  float volume_a_ = 1;         // a's unit of volume, in b's
+  float seen_ = kFarthest;     // pairs that were seen before, and not kept, are no nearer
+  float most_ = kFarthest;     // pairs from here on have been dropped
   Bounds out_;
   float best_squared_ = kFar;
   float threshold_ = 0;
@@ -375,7 +400,7 @@ std::uint32_t nearest_child(const Kernels& kernels, const Box& box, const Transf
                             const RegionNode& node, Pace& pace) noexcept {
   pace.charge(1);
   BoxTest test;
-  static_cast<void>(kernels.test_boxes(box, to_node, node, 1, kFar, test));
+  static_cast<void>(kernels.test_boxes(box, to_node, {}, node, 1, kFar, test));
   const auto last = static_cast<std::int32_t>(node.children) - 1;
   std::uint32_t nearest = 0;
   for (std::uint32_t i = 0; i < node.children; ++i) nearest = test.place[i] == last ? i : nearest;

@@ -21,7 +21,8 @@ inline constexpr std::uint64_t kUnitsPerReading = 30;
 /// What a search knows of a region. `best` is an upper bound where known.
 struct Bounds {
   Witness best;
-  float rest = 0;        ///< proved for all pairs but those kept, rounding subtracted; >= 0
+  float rest = 0;        ///< proved for all pairs but those kept, all along the course, rounding
+                         ///< subtracted; >= 0
   bool complete = true;  ///< false: the search was ended before it had seen everything
 };
 
@@ -29,7 +30,7 @@ struct Bounds {
 struct Candidate {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
-  float squared = 0;  ///< bound, in units
+  float squared = 0;  ///< bound for the whole course, in units
 };
 
 /// Depth first: each of two trees is descended at most kMaxRegionDepth times, each time leaving at
@@ -40,7 +41,7 @@ inline constexpr std::uint32_t kMaxCandidates =
 /// Working memory of one search at a time; needs no initialisation.
 struct SearchScratch {
   KernelScratch kernel;
-  NearPairs near;  ///< of the last search(), nearest first
+  NearPairs near;  ///< of the last search(), nearest first: the least of each on the course
   Candidate stack[kMaxCandidates];
   std::uint32_t batch_a[kBatch];
   std::uint32_t batch_b[kBatch];
@@ -161,6 +162,7 @@ struct Reach {
       0;  ///< pairs farther than the nearest by less are kept; < 0: so much may be missed
   bool first = false;               ///< end as soon as any pair nearer than limit is known
   std::uint32_t room = kNearPairs;  ///< pairs that are kept, at most
+  Vec3f course{};  ///< of the region: what is proved holds all along it; in b's image coordinates
 };
 
 /// Depth-first search of both trees, nearest child first: what is not nearer than
@@ -169,9 +171,10 @@ struct Reach {
 ///
 /// @param region   of a
 /// @param witness  the best known; its distance at the present poses
-/// Every pair of the region is kept, or at least `rest` apart. Complete: rest >= min(best, limit)
-/// + margin - kRounding, or the kept pairs are all that there is room for, and rest is no less than
-/// their distances, less kRounding. Ended before: rest and best still hold.
+/// While the region goes its course, not turning, no pair of it is nearer than it is kept with, or
+/// if it is not kept, than `rest`. Complete: rest >= min(best, limit) + margin - kRounding, or the
+/// kept pairs are all that there is room for, and rest is no less than their distances, less
+/// kRounding; best is exact. Ended before: rest and best still hold.
 /// @param left     where it is ended before: what it has not looked at; else as it was. May be null
 /// Cost: the budget, or all pairs of boxes nearer than the answer. No allocation, no recursion.
 Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
@@ -181,7 +184,8 @@ Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scr
 /// Goes on with a search at the present poses. As search(), but what was seen before is not seen
 /// again: complete, `rest` may be less by what that has come nearer since. The distances in
 /// scratch.near of pairs that were kept before are bounds from below.
-/// @param moved  how far the region has moved since the search was ended, at most, in units
+/// @param reach  its course ends where that of the search before did
+/// @param moved  how far the region is off that course, at most (moved_since()), in units
 /// @param left   of it; where this is ended too, what is left now
 Bounds go_on_searching(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
                        Pace& pace, const Witness& witness, const Reach& reach, double moved,

@@ -234,13 +234,34 @@ PALPATE_LANES void store_vectors(Vectors v, float (&out)[3][kBatch], int lane) n
   store(v.z, out[2] + lane);
 }
 
-/// @param out_apart  null where points are not asked for
-template <bool kPoints>
+/// Bounds from below, squared, of the distances of the pairs while a goes a course: no point of b
+/// is nearer to one of a than along the way that the pair is apart. 0 where there is no such way.
+PALPATE_LANES Floats least_along(const Work& w, Vectors course) noexcept {
+  const Vectors way = w.best.apart;
+  const Floats length2 = dot(way, way);
+  Floats least_a = all(std::numeric_limits<float>::max());
+  Floats most_b = Floats{};  // the origin is one of its corners
+  for (int i = 0; i < 3; ++i) {
+    least_a = least(dot(way, w.a.corner[i]), least_a);
+    most_b = most(dot(way, w.b.corner[i]), most_b);
+  }
+  const Floats apart = most(least_a - most_b + least(dot(way, course), Floats{}), Floats{});
+  return length2 > Floats{} ? apart * apart / length2 : Floats{};
+}
+
+/// What is asked of the pairs beside their distances.
+enum class Asked { nothing, ways, courses };
+
+/// @param out_apart  of ways
+/// @param out_least  of courses
+template <Asked kAsked>
 PALPATE_LANES std::uint32_t distances(const image::RegionTriangle* const (&a)[kBatch],
                                       const image::RegionTriangle* const (&b)[kBatch],
                                       const Transform& a_to_b, KernelScratch& scratch,
-                                      float (&out_squared)[kBatch],
-                                      float (*out_apart)[3][kBatch]) noexcept {
+                                      float (&out_squared)[kBatch], float (*out_apart)[3][kBatch],
+                                      Vec3f course, float (*out_least)[kBatch]) noexcept {
+  constexpr bool kPoints = kAsked != Asked::nothing;
+  constexpr float kShrunk2 = 1.0f / (kStretch * kStretch);
   Work& work = work_in(scratch);
   TriangleLanes& lanes = scratch.lanes;
   gather(a, lanes.a);
@@ -253,9 +274,17 @@ PALPATE_LANES std::uint32_t distances(const image::RegionTriangle* const (&a)[kB
       work.b.corner[i] = all(kStretch) * (corner(lanes.b, i, lane) - origin);
     }
     const Ints cross = closest<kPoints>(work);
-    const Floats squared = work.best.squared * (1.0f / (kStretch * kStretch));
+    const Floats squared = work.best.squared * kShrunk2;
     store(cross ? Floats{} : squared, out_squared + lane);
-    if constexpr (kPoints) store_vectors(shrunk(work.best.apart), *out_apart, lane);
+    if constexpr (kAsked == Asked::ways) {
+      store_vectors(shrunk(work.best.apart), *out_apart, lane);
+    }
+    if constexpr (kAsked == Asked::courses) {
+      const Vectors stretched = {all(kStretch * course.x), all(kStretch * course.y),
+                                 all(kStretch * course.z)};
+      const Floats least = least_along(work, stretched) * kShrunk2;
+      store(cross ? Floats{} : least, *out_least + lane);
+    }
     crossing |= bits(cross) << lane;
   }
   return crossing;
@@ -265,14 +294,21 @@ std::uint32_t triangle_distances(const image::RegionTriangle* const (&a)[kBatch]
                                  const image::RegionTriangle* const (&b)[kBatch],
                                  const Transform& a_to_b, KernelScratch& scratch,
                                  float (&out_squared)[kBatch]) noexcept {
-  return distances<false>(a, b, a_to_b, scratch, out_squared, nullptr);
+  return distances<Asked::nothing>(a, b, a_to_b, scratch, out_squared, nullptr, {}, nullptr);
 }
 
 std::uint32_t triangle_ways(const image::RegionTriangle* const (&a)[kBatch],
                             const image::RegionTriangle* const (&b)[kBatch],
                             const Transform& a_to_b, KernelScratch& scratch,
                             float (&out_squared)[kBatch], float (&out_apart)[3][kBatch]) noexcept {
-  return distances<true>(a, b, a_to_b, scratch, out_squared, &out_apart);
+  return distances<Asked::ways>(a, b, a_to_b, scratch, out_squared, &out_apart, {}, nullptr);
+}
+
+std::uint32_t triangle_courses(const image::RegionTriangle* const (&a)[kBatch],
+                               const image::RegionTriangle* const (&b)[kBatch],
+                               const Transform& a_to_b, Vec3f course, KernelScratch& scratch,
+                               float (&out_squared)[kBatch], float (&out_least)[kBatch]) noexcept {
+  return distances<Asked::courses>(a, b, a_to_b, scratch, out_squared, nullptr, course, &out_least);
 }
 
 void separations(const image::RegionTriangle* const (&a)[kBatch],

@@ -107,6 +107,22 @@ TEST(RegionsRest, where_corners_of_many_triangles_meet) {
   EXPECT_LT(3 * counters(*scene.engine)->searches, contacts);
 }
 
+/// A body that slides along another, by a fiftieth of delta a tick.
+TEST(RegionsRest, where_a_body_keeps_its_course) {
+  const BakedBody a(bumpy_ball(40, 56, 1), kRegions);
+  const BakedBody b(box(2, 2, 0.5), kRegions);
+  constexpr double kDelta = 0.05;
+  BakedScene scene({a.view, b.view}, {{0, 1}}, exact_settings(kDelta));
+  if (counters(*scene.engine) == nullptr) GTEST_SKIP() << "this build counts nothing";
+  std::uint64_t contacts = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Pose moved{{0.02 * kDelta * i, 0, 1.5}, {}};
+    const Pose poses[] = {moved, {}};
+    contacts += tick_or_fail(*scene.engine, poses).contacts.size();
+  }
+  EXPECT_LT(8 * counters(*scene.engine)->searches, contacts);
+}
+
 struct Bodies {
   BakedBody a{bumpy_ball(20, 28, 1), kRegions};
   BakedBody b{bumpy_ball(16, 16, 0.8), kRegions};
@@ -221,6 +237,39 @@ TEST(RegionSearch, pairs_that_are_not_kept_are_beyond_rest) {
   }
 }
 
+/// A course in the world is one of b, which stands in it.
+regions::Reach reach_along(const SearchedPair& at, Vec3d course_m) {
+  regions::Reach reach{2.0f, 0.02f};
+  const double to_image = 1 / (at.pair.unit_m * at.pair.scale_b);
+  reach.course = vec_cast<float>(to_image * course_m);
+  return reach;
+}
+
+Pose shifted(Pose pose, Vec3d by) {
+  pose.position_m += by;
+  return pose;
+}
+
+TEST(RegionSearch, all_along_its_course_what_is_not_kept_is_beyond_rest) {
+  std::mt19937 rng(3);
+  for (const std::uint32_t region : {2u, 7u, 11u}) {
+    for (const double length : {1e-3, 0.05}) {
+      const Vec3d course = length * random_unit(rng);
+      SearchedPair at(kNear);
+      const double least = truth_in_units(kNear, at.pair.unit_m)[region];
+      Meter meter({}, {});
+      regions::Pace pace(meter);
+      const regions::Bounds found = regions::search(regions::best_kernels(), at.frame, *at.scratch,
+                                                    pace, region, {}, reach_along(at, course));
+      ASSERT_TRUE(found.complete);
+      ASSERT_NEAR(double(found.best.distance), least, kRounding);
+      for (const double part : {0.0, 0.4, 1.0}) {
+        expect_pairs_bounded(at, shifted(kNear, part * course), region, found);
+      }
+    }
+  }
+}
+
 /// A search in pieces of so many units; the bodies move in between.
 /// @param then  called with what is known after each piece
 template <class Then>
@@ -317,6 +366,26 @@ TEST(RegionSearch, goes_on_with_true_bounds_while_the_bodies_move) {
   EXPECT_GT(in_pieces, 20);
 }
 
+TEST(RegionState, what_keeps_to_its_course_has_not_moved) {
+  SearchedPair at(kNear);
+  constexpr std::uint32_t kRegion = 5;
+  const Vec3d course{0.02, -0.01, 0.03};
+  const double length = norm(course) / at.pair.unit_m;
+  const Vec3d aside = 0.01 * across(course);
+  regions::RegionState state;
+  regions::prove(state, at.pair, kRegion, 1, (1 / at.pair.unit_m) * course);
+  const auto moved = [&](Vec3d by) {
+    levels::move(at.pair, shifted(kNear, by), {});
+    return regions::moved_since(state.at, at.pair, kRegion);
+  };
+  EXPECT_NEAR(moved({}), 0, 1e-8);
+  EXPECT_NEAR(moved(0.6 * course), 0, 1e-8);
+  EXPECT_NEAR(moved(course), 0, 1e-8);
+  EXPECT_NEAR(moved(0.3 * course + aside), norm(aside) / at.pair.unit_m, 1e-8);
+  EXPECT_NEAR(moved(1.5 * course), 0.5 * length, 1e-8);
+  EXPECT_NEAR(moved(-0.5 * course), 0.5 * length, 1e-8);
+}
+
 TEST(RegionState, no_point_moves_farther_than_is_said) {
   std::mt19937 rng(5);
   for (std::uint32_t round = 0; round < 20; ++round) {
@@ -391,11 +460,12 @@ TEST(RegionState, what_is_kept_is_measured_or_known_to_be_farther) {
   constexpr double kDelta = 0.05;
   std::mt19937 rng(7);
   Unmeasured unmeasured;
-  for (const double speed : {0.02, 0.1}) {  // of delta
+  for (const double speed : {0.02, 0.1, 0.05}) {  // of delta
+    const Vec3d steady = speed == 0.05 ? Vec3d{0, 0.6, 0.8} : Vec3d{};
     BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, exact_settings(kDelta));
     Pose pose = kNear;
     for (int i = 0; i < 60; ++i) {
-      pose.position_m += speed * kDelta * random_unit(rng);
+      pose.position_m += speed * kDelta * (random_unit(rng) + steady);
       pose.orientation = pose.orientation * turn(0.3 * speed * kDelta * random_unit(rng));
       const Pose poses[2] = {pose, {}};
       const Budget budget = i % 3 == 0 ? Budget{} : Budget{.units = 200};

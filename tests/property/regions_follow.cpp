@@ -111,7 +111,7 @@ Vec3d summed_force(const TickResult& r) {
 }
 
 TEST(RegionsFollow, force_is_near_the_exact_one_at_a_fortieth_of_its_work) {
-  constexpr std::uint64_t kUnits = 1100;
+  constexpr std::uint64_t kUnits = 700;
   constexpr int kAll = 3 * kTicks;
   BakedScene exact = scene();
   BakedScene followed = scene();

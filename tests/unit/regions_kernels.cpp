@@ -212,6 +212,44 @@ TEST(RegionKernels, Separations_bound_distances_and_mostly_meet_them_along_their
   EXPECT_GT(met, 0.95 * asked);
 }
 
+TEST(RegionKernels, TriangleCourses_bound_distances_all_along_and_are_those_where_nothing_moves) {
+  Random random(10);
+  const auto scratch = std::make_unique<KernelScratch>();
+  int apart = 0, met = 0;
+  for (int round = 0; round < 1000; ++round) {
+    Pairs pairs = random_pairs(random);
+    const double size = 1 + 10 * double(pairs.map.scale);
+    const Vec3d course = vec_cast<double>(vec_cast<float>(in_cube(random, 0.2 * size)));
+    float squared[kBatch], still[kBatch], again[kBatch], least[kBatch];
+    const std::uint32_t crossing =
+        best_kernels().triangle_distances(pairs.at_a, pairs.at_b, pairs.map, *scratch, squared);
+    best_kernels().triangle_courses(pairs.at_a, pairs.at_b, pairs.map, {}, *scratch, again, still);
+    ASSERT_EQ(crossing,
+              best_kernels().triangle_courses(pairs.at_a, pairs.at_b, pairs.map,
+                                              vec_cast<float>(course), *scratch, again, least));
+    ASSERT_EQ(std::memcmp(squared, again, sizeof squared), 0);
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      const double distance = std::sqrt(double(squared[i]));
+      ASSERT_LE(std::sqrt(double(still[i])), distance + 1e-6 * size);
+      // A needle's closest point may be off where its distance is not: then less is proved.
+      apart += distance > 1e-3 * size ? 1 : 0;
+      met += distance > 1e-3 * size && std::sqrt(double(still[i])) > distance - 2e-6 * size ? 1 : 0;
+    }
+    const Transform start = pairs.map;
+    for (const double part : {0.0, 0.2, 0.5, 1.0}) {
+      const double shift[3] = {course.x, course.y, course.z};
+      for (int k = 0; k < 3; ++k) {
+        pairs.map.translation[k] = start.translation[k] + static_cast<float>(part * shift[k]);
+      }
+      for (std::uint32_t i = 0; i < kBatch; ++i) {
+        ASSERT_LE(std::sqrt(double(least[i])), truth(pairs, i).distance + 1e-6 * size);
+      }
+    }
+  }
+  EXPECT_GT(apart, 5000);
+  EXPECT_GT(met, 0.95 * apart);
+}
+
 /// Corners of a box that is given by axes, centre and half lengths.
 std::array<Vec3d, 8> corners_of(const Vec3d (&axes)[3], Vec3d centre, const double (&half)[3]) {
   std::array<Vec3d, 8> out;
@@ -291,7 +329,7 @@ TEST(RegionKernels, BoxBound_never_exceeds_the_distance_of_two_points_of_the_box
     const Boxes boxes = random_boxes(random);
     BoxTest test;
     const std::uint32_t near =
-        best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, 0.25f, test);
+        best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 0.25f, test);
     for (std::uint32_t i = 0; i < kBatch; ++i) {
       const double bound = std::sqrt(double(test.squared[i]));
       ASSERT_LE(bound, nearest_points(random, boxes.corners_of_one, boxes.corners[i]) +
@@ -303,6 +341,30 @@ TEST(RegionKernels, BoxBound_never_exceeds_the_distance_of_two_points_of_the_box
   EXPECT_GT(positive, 8000);  // else the bound would be of no use
 }
 
+TEST(RegionKernels, BoxBound_holds_all_along_a_course) {
+  Random random(9);
+  int positive = 0;
+  for (int round = 0; round < 1000; ++round) {
+    const Boxes boxes = random_boxes(random);
+    const Vec3f course = vec_cast<float>(in_cube(random, 0.3));
+    BoxTest at_rest, test;
+    best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 0.25f, at_rest);
+    best_kernels().test_boxes(boxes.one, boxes.map, course, boxes.node, 1, 0.25f, test);
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      const double bound = std::sqrt(double(test.squared[i]));
+      const double rounding = 1e-6 * (1 + double(boxes.map.scale));
+      ASSERT_LE(bound, std::sqrt(double(at_rest.squared[i])) + rounding);
+      for (const double part : {0.0, 0.3, 0.6, 1.0}) {
+        std::array<Vec3d, 8> moved = boxes.corners_of_one;
+        for (Vec3d& p : moved) p += part * vec_cast<double>(course);
+        ASSERT_LE(bound, nearest_points(random, moved, boxes.corners[i]) + rounding);
+      }
+      positive += bound > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(positive, 6000);
+}
+
 TEST(RegionKernels, BoxBound_of_aligned_boxes_is_their_distance) {
   Boxes boxes;
   boxes.map = in_float(Mat3d{}, Vec3d{3, 0, 0}, 1);
@@ -312,10 +374,17 @@ TEST(RegionKernels, BoxBound_of_aligned_boxes_is_their_distance) {
     for (auto& half : boxes.node.half) half[i] = 0.5f;
   }
   BoxTest test;
-  best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, 1, test);
+  best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 1, test);
   EXPECT_EQ(test.squared[5], 2.0f * 2.0f + 1.0f);
-  best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 9, 1, test);
+  best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 9, 1, test);
   EXPECT_EQ(test.squared[5], 9 * (2.0f * 2.0f + 1.0f));
+  // What goes along a face comes no nearer; what goes away is nearest where it starts.
+  best_kernels().test_boxes(boxes.one, boxes.map, {0, 0, 4}, boxes.node, 1, 1, test);
+  EXPECT_EQ(test.squared[5], 2.0f * 2.0f + 1.0f);
+  best_kernels().test_boxes(boxes.one, boxes.map, {1, 0, 0}, boxes.node, 1, 1, test);
+  EXPECT_EQ(test.squared[5], 2.0f * 2.0f + 1.0f);
+  best_kernels().test_boxes(boxes.one, boxes.map, {-1, 0, 0}, boxes.node, 1, 1, test);
+  EXPECT_EQ(test.squared[5], 1.0f + 1.0f);
 }
 
 TEST(RegionKernels, Boxes_are_placed_by_how_near_they_are) {
@@ -328,7 +397,7 @@ TEST(RegionKernels, Boxes_are_placed_by_how_near_they_are) {
     const float below = round % 3 == 0 ? kFar : 0.25f;
     BoxTest test;
     const std::uint32_t near =
-        best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, below, test);
+        best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, below, test);
     const Vec3d centre =
         mapped(boxes.map, {double(boxes.one.x[3]), double(boxes.one.y[3]), double(boxes.one.z[3])});
     const auto apart = [&](std::uint32_t i) {
@@ -368,11 +437,11 @@ TEST(RegionKernels, BoxTest_keeps_the_least_of_what_was_passed_over) {
   boxes.node.children = kBatch;
   BoxTest test;
   std::fill_n(test.passed, kBatch, 7.0f);
-  best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, 1, test);
+  best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 1, test);
   EXPECT_EQ(test.passed[3], 7.0f);
   boxes.map = in_float(Mat3d{}, Vec3d{2, 0, 0}, 1);
   boxes.node.axes[0][3] = 1;
-  best_kernels().test_boxes(boxes.one, boxes.map, boxes.node, 1, 1, test);
+  best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 1, test);
   EXPECT_EQ(test.passed[3], 4.0f);
   EXPECT_EQ(test.passed[2], 7.0f);
 }
@@ -416,6 +485,7 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
     const Boxes boxes = random_boxes(random);
     float first[kBatch], other[kBatch], way_first[3][kBatch], way_other[3][kBatch];
     float separation_first[kBatch], separation_other[kBatch];
+    float least_first[kBatch], least_other[kBatch];
     WitnessLanes found_first, found_other;
     const auto run = [&](const Kernels& table, float(&squared)[kBatch], WitnessLanes& found) {
       const std::uint32_t crossing =
@@ -425,15 +495,17 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
     };
     const std::uint32_t crossing = run(*tables()[0], first, found_first);
     const auto run_along = [&](const Kernels& table, float(&ways)[3][kBatch],
-                               float(&separations)[kBatch]) {
+                               float(&separations)[kBatch], float(&least)[kBatch]) {
       float squared[kBatch];
       table.triangle_ways(pairs.at_a, pairs.at_b, pairs.map, *scratch, squared, ways);
       const Vec3f along{0.6f, -0.64f, 0.48f};
       table.separations(pairs.at_a, pairs.at_b, pairs.map, along, *scratch, separations);
+      table.triangle_courses(pairs.at_a, pairs.at_b, pairs.map, along, *scratch, squared, least);
     };
-    run_along(*tables()[0], way_first, separation_first);
+    run_along(*tables()[0], way_first, separation_first, least_first);
     for (const Kernels* table : tables()) {
-      run_along(*table, way_other, separation_other);
+      run_along(*table, way_other, separation_other, least_other);
+      ASSERT_EQ(std::memcmp(least_first, least_other, sizeof least_first), 0) << table->name;
       ASSERT_EQ(std::memcmp(way_first, way_other, sizeof way_first), 0) << table->name;
       ASSERT_EQ(std::memcmp(separation_first, separation_other, sizeof separation_first), 0)
           << table->name;
@@ -444,11 +516,12 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
       ASSERT_EQ(found_first.crossing, found_other.crossing);
     }
     BoxTest expected;
+    const Vec3f course{0.1f, -0.02f, 0.05f};
     const std::uint32_t near =
-        tables()[0]->test_boxes(boxes.one, boxes.map, boxes.node, 1.5f, 1, expected);
+        tables()[0]->test_boxes(boxes.one, boxes.map, course, boxes.node, 1.5f, 1, expected);
     for (const Kernels* table : tables()) {
       BoxTest test;
-      ASSERT_EQ(near, table->test_boxes(boxes.one, boxes.map, boxes.node, 1.5f, 1, test));
+      ASSERT_EQ(near, table->test_boxes(boxes.one, boxes.map, course, boxes.node, 1.5f, 1, test));
       ASSERT_EQ(std::memcmp(&expected, &test, sizeof test), 0) << table->name;
     }
   }
