@@ -33,7 +33,7 @@ constexpr double kUnitsToFollow = 16;
 /// Where images can be looked up in, a survey takes the place of following, from so many ticks on
 /// and with this share of one. What a first search takes is told by those of before, or by a few,
 /// which end when they have taken too much together.
-constexpr double kTicksToSurvey = 1.75;
+constexpr double kTicksToSurvey = 1.4;
 constexpr std::uint32_t kProbes = 3;
 constexpr double kMostSurveyed = 0.97;
 constexpr double kFewestToSurvey = 64;
@@ -226,12 +226,7 @@ class Narrowing {
     return work_.is_felt(item) && work_.is_present(item);
   }
 
-  /// Time for all contacts, and units for the pairs of triangles that cross (report.hpp).
-  void leave_for_report() noexcept {
-    work_.meter.expect_contacts(tail_contacts(felt_, crossing_));
-    work_.meter.set_aside(
-        static_cast<std::uint64_t>(static_cast<double>(crossing_) * pursuit_.listing_units));
-  }
+  void leave_for_report() noexcept { work_.leave_for_report(felt_, crossing_); }
 
   float cost_of(const Active& item) noexcept { return work_.state_of(item).cost; }
 

@@ -32,7 +32,8 @@ struct Pursuit {
   std::uint32_t round = 0;      ///< ticks in which witnesses were followed
   std::uint32_t next_dive = 0;  ///< where the next one begins to dive
   std::uint64_t unit_ns = 0;    ///< time of a work unit; 0: not known
-  double listing_units = 32;    ///< what the pairs that cross in a region take to list, of late
+  double listing_units = 64;    ///< what the pairs that cross in a region take to list, of late;
+                                ///< first, what does for half of them
 
   /// @param units     that it took to list the pairs that cross in a region
   /// @param complete  false: it would have taken more

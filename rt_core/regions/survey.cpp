@@ -50,9 +50,9 @@ class Survey {
     for (std::uint32_t i = 0; i < work_.count; ++i) {
       const Active& item = work_.active()[i];
       round_of_[i] = round_of(item);
-      if (work_.is_felt(item) && work_.is_present(item)) {
-        expected_ += tail_contacts(1, work_.is_crossing(item) ? 1 : 0);
-      }
+      if (!work_.is_felt(item) || !work_.is_present(item)) continue;
+      ++felt_;
+      crossing_ += work_.is_crossing(item) ? 1u : 0u;
     }
     const std::uint32_t before = work_.swept ? 0 : rounds_seen();
     const std::uint32_t seen = work_.swept ? begin() : go_on(before);
@@ -151,12 +151,15 @@ class Survey {
     const Active& item = work_.active()[index];
     RegionState& state = work_.state_of(item);
     const bool was_felt = work_.is_felt(item);
+    const bool crossed = work_.is_crossing(item);
     if (state.witness.known() && !(pair.distance < state.witness.distance)) return;
     state.witness = pair;
     // Every look as a seed would cost a fifth of the survey.
     if (spread_) note_seed(*work_.frame_of(item).a, pair, state.seeds);
-    // Contacts take time, too: no more are sought than can be told.
-    if (!was_felt && work_.is_felt(item)) work_.meter.expect_contacts(++expected_);
+    // Contacts take time and units, too: no more are sought than can be told.
+    felt_ += !was_felt && work_.is_felt(item) ? 1u : 0u;
+    crossing_ += !crossed && work_.is_crossing(item) ? 1u : 0u;
+    work_.leave_for_report(felt_, crossing_);
   }
 
   Work& work_;
@@ -169,7 +172,8 @@ class Survey {
   std::uint32_t beside_ = 0;  // beside the nearest of them
   std::uint32_t rounds_ = 0;
   bool spread_ = true;          // which kind is measured
-  std::uint64_t expected_ = 0;  // contacts, as tail_contacts() counts them
+  std::uint64_t felt_ = 0;      // of active regions
+  std::uint64_t crossing_ = 0;  // likewise
 };
 
 }  // namespace

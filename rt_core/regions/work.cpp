@@ -22,6 +22,12 @@ constexpr float kNotClimbed = 5;
 
 }  // namespace
 
+void Work::leave_for_report(std::uint64_t felt, std::uint64_t crossing) noexcept {
+  const double listing = static_cast<double>(crossing) * memory.pursuit.listing_units;
+  meter.expect_contacts(tail_contacts(felt, crossing));
+  meter.set_aside(static_cast<std::uint64_t>(listing));
+}
+
 float Work::weight_after_jump(const Active& item) const noexcept {
   if (!is_felt(item)) return kNoContact;
   const float depth = 1 - upper_of(item) / delta_of(item);

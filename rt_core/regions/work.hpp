@@ -78,6 +78,9 @@ struct Work {
     if (units < kEndless) pace.limit(static_cast<std::uint64_t>(units));
   }
 
+  /// Time for all contacts, and units for the pairs of triangles that cross (report.hpp).
+  void leave_for_report(std::uint64_t felt, std::uint64_t crossing) noexcept;
+
   /// A region whose bounds have changed: sets its width and urgency.
   void widen(Active& item) noexcept;
   void widen_all() noexcept;
