@@ -15,7 +15,7 @@ constexpr float kStep = 0.3f;
 constexpr float kLastStep = 0.1f;
 /// Where an interval may stay open, a search leaves this share of that to motion, unless it is
 /// fast.
-constexpr float kRestShare = 0.75f;
+constexpr float kRestShare = 0.6f;
 /// Where there is no room for what comes near on a region's course, the next one is so much
 /// shorter, and where there is again, longer.
 constexpr float kShorter = 0.5f;
@@ -24,7 +24,8 @@ constexpr float kLonger = 1.2f;
 constexpr float kClimbReach = 2;
 
 /// Reach::margin of a search whose interval may stay open by the tolerance.
-float margin_within(const Work& work, const Active& item, float tolerance) noexcept {
+/// @param away  how far the region will go from its witness, which may open the interval as well
+float margin_within(const Work& work, const Active& item, float tolerance, float away) noexcept {
   // The search's bound gives away kRounding, which is part of the interval.
   const float room = tolerance > kRounding ? tolerance - kRounding : 0;
   auto margin = static_cast<float>(margin_of(work.pair_of(item)));
@@ -33,7 +34,7 @@ float margin_within(const Work& work, const Active& item, float tolerance) noexc
   if (slow && !anew && !work.demand.limited && margin < kRestShare * room) {
     margin = kRestShare * room;
   }
-  return margin - room;
+  return margin - room + (away > room ? away - room : 0);
 }
 
 /// Searches a region from where a tick before had to leave off, or from the start. What the budget
@@ -80,7 +81,7 @@ bool search_along(Work& work, Active& item, float tolerance, bool first,
   const PairState& pair = work.pair_of(item);
   RegionState& state = work.state_of(item);
   const Reach reach{static_cast<float>(pair.delta) + kClosed,
-                    margin_within(work, item, tolerance) + course.away, first, work.room,
+                    margin_within(work, item, tolerance, course.away), first, work.room,
                     in_image(pair, course.way)};
   const std::uint64_t before = work.pace.used();
   const bool known = state.witness.known();
