@@ -17,8 +17,9 @@ constexpr float kLastStep = 0.1f;
 /// fast.
 constexpr float kRestShare = 0.6f;
 /// Where there is no room for what comes near on a region's course, the next one is so much
-/// shorter, and where there is again, longer.
+/// shorter, down to a tick or so, and where there is again, longer.
 constexpr float kShorter = 0.5f;
+constexpr float kShortest = 0.125f;
 constexpr float kLonger = 1.2f;
 /// Neighbours of a witness farther than this many delta are not looked at.
 constexpr float kClimbReach = 2;
@@ -122,10 +123,10 @@ void search_region(Work& work, Active& item, float tolerance, bool first) noexce
   float& ahead = work.state_of(item).ahead;
   if (item.width > tolerance && item.width > kClosed) {
     // More comes near on the way than there is room for: of the present place alone, all is kept.
-    ahead *= kShorter;
+    ahead = ahead > kShortest / kShorter ? kShorter * ahead : kShortest;
     search_along(work, item, tolerance, false, {});
-  } else if (ahead < 1) {
-    ahead *= kLonger;
+  } else {
+    ahead = ahead < 1 / kLonger ? kLonger * ahead : 1;
   }
 }
 

@@ -107,6 +107,21 @@ TEST(RegionsRest, where_corners_of_many_triangles_meet) {
   EXPECT_LT(3 * counters(*scene.engine)->searches, contacts);
 }
 
+/// Of surfaces that fit, more comes near on the way than is kept: what is proved is proved all the
+/// same.
+TEST(RegionsRest, where_more_comes_near_than_there_is_room_for) {
+  const BakedBody inner(ball(40, 60, 0.97), kRegions);
+  const BakedBody outer(bowl(40, 60, 1), kRegions);
+  constexpr double kDelta = 0.05;
+  BakedScene scene({inner.view, outer.view}, {{0, 1}}, exact_settings(kDelta));
+  for (int i = 0; i < 30; ++i) {
+    const Pose poses[] = {{{0.02 * kDelta * i - 0.01, 0, 0}, {}}, {}};
+    const TickResult result = tick_or_fail(*scene.engine, poses);
+    ASSERT_GT(result.contacts.size(), 20u);
+    EXPECT_LT(result.certificate.error_bound_m, 1e-5) << i;
+  }
+}
+
 /// A body that slides along another, by a fiftieth of delta a tick.
 TEST(RegionsRest, where_a_body_keeps_its_course) {
   const BakedBody a(bumpy_ball(40, 56, 1), kRegions);
