@@ -9,7 +9,7 @@ namespace {
 /// Farther ahead, what comes near on the way costs more than the longer rest saves.
 constexpr double kTicksAhead = 8;
 /// Nor than so many delta: fast bodies do not go straight for long.
-constexpr double kFarthestAhead = 0.5;
+constexpr double kFarthestAhead = 0.2;
 
 /// Which way a region's witness lies, from b; 0 where that is not known.
 Vec3d way_of_witness(const Work& work, const Active& item) noexcept {
