@@ -12,7 +12,8 @@
 namespace palpate::levels {
 
 /// Where the points x of a have been of late, in the coordinates of b: at rotation * x +
-/// translation on the mean of the ticks so far, the last ones counting most.
+/// translation on the mean of the ticks so far, the last ones counting most. A mean of rotations,
+/// which is none itself.
 struct Trail {
   Mat3d rotation{};
   Vec3d translation{};

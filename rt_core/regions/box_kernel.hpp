@@ -53,15 +53,15 @@ PALPATE_LANES Vectors centres_apart(const Box& box, const image::RegionNode& nod
 }
 
 /// Bounds of sixteen boxes, a part of them at a time, squared.
-/// @param half  from the box to both ends of its course
-PALPATE_LANES Floats box_lanes(const Box& box, Vec3f half, const image::RegionNode& node,
+/// @param to_end  from the box, which is half way, to the end of its course
+PALPATE_LANES Floats box_lanes(const Box& box, Vec3f to_end, const image::RegionNode& node,
                                int lane) noexcept {
   const Vectors axis[3] = {
       {load(node.axes[0] + lane), load(node.axes[1] + lane), load(node.axes[2] + lane)},
       {load(node.axes[3] + lane), load(node.axes[4] + lane), load(node.axes[5] + lane)},
       {load(node.axes[6] + lane), load(node.axes[7] + lane), load(node.axes[8] + lane)}};
-  const Floats halves[3] = {load(node.half[0] + lane), load(node.half[1] + lane),
-                            load(node.half[2] + lane)};
+  const Floats half[3] = {load(node.half[0] + lane), load(node.half[1] + lane),
+                          load(node.half[2] + lane)};
   const Vectors apart = centres_apart(box, node, lane);
   Floats cosine[3][3];  // of the node's axis and the single box's, sizes only
   for (int i = 0; i < 3; ++i) {
@@ -71,16 +71,16 @@ PALPATE_LANES Floats box_lanes(const Box& box, Vec3f half, const image::RegionNo
   }
   const auto along_box = [&](int k) {
     const Floats between = apart.x * box.x[k] + apart.y * box.y[k] + apart.z * box.z[k];
-    const Floats of_node =
-        cosine[0][k] * halves[0] + cosine[1][k] * halves[1] + cosine[2][k] * halves[2];
-    const float along = half.x * box.x[k] + half.y * box.y[k] + half.z * box.z[k];
+    const Floats of_node = cosine[0][k] * half[0] + cosine[1][k] * half[1] + cosine[2][k] * half[2];
+    const float along = to_end.x * box.x[k] + to_end.y * box.y[k] + to_end.z * box.z[k];
     return gap_squared(between, of_node, all(box.half[k] + __builtin_fabsf(along)));
   };
   const auto along_node = [&](int i) {
     const Floats of_box =
         cosine[i][0] * box.half[0] + cosine[i][1] * box.half[1] + cosine[i][2] * box.half[2];
-    const Floats along = magnitude(axis[i].x * half.x + axis[i].y * half.y + axis[i].z * half.z);
-    return gap_squared(dot(axis[i], apart), of_box + along, halves[i]);
+    const Floats along =
+        magnitude(axis[i].x * to_end.x + axis[i].y * to_end.y + axis[i].z * to_end.z);
+    return gap_squared(dot(axis[i], apart), of_box + along, half[i]);
   };
   return most(along_box(0) + along_box(1) + along_box(2),
               along_node(0) + along_node(1) + along_node(2));

@@ -18,7 +18,8 @@ struct Course {
   float away = 0;  ///< how far that takes the region from its witness, in units
 };
 
-/// For the ticks to come. What brings a region nearer to its witness is left out: while that comes
+/// For the ticks to come; O(1), as course_left(). None where bodies are too fast, stand still, or
+/// have just jumped. What brings a region nearer to its witness is left out: while that comes
 /// nearer no less than anything else, the interval between them grows no wider.
 [[nodiscard]] Course course_ahead(const Work& work, const Active& item) noexcept;
 

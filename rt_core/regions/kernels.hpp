@@ -96,7 +96,7 @@ struct Kernels {
 
   /// The same distances, and bounds from below, squared, of those while a goes a course, which is
   /// in the coordinates of b's image: how far the pairs are apart along their ways now, less what
-  /// of the course goes against these.
+  /// of the course goes against these; 0 where they cross. The root is too large by at most 1e-6.
   std::uint32_t (*triangle_courses)(const image::RegionTriangle* const (&a)[kBatch],
                                     const image::RegionTriangle* const (&b)[kBatch],
                                     const Transform& a_to_b, Vec3f course, KernelScratch& scratch,

@@ -157,9 +157,11 @@ class Survey {
     // Every look as a seed would cost a fifth of the survey.
     if (spread_) note_seed(*work_.frame_of(item).a, pair, state.seeds);
     // Contacts take time and units, too: no more are sought than can be told.
-    felt_ += !was_felt && work_.is_felt(item) ? 1u : 0u;
-    crossing_ += !crossed && work_.is_crossing(item) ? 1u : 0u;
-    work_.leave_for_report(felt_, crossing_);
+    const bool meets = !was_felt && work_.is_felt(item);
+    const bool enters = !crossed && work_.is_crossing(item);
+    felt_ += meets ? 1u : 0u;
+    crossing_ += enters ? 1u : 0u;
+    if (meets || enters) work_.leave_for_report(felt_, crossing_);
   }
 
   Work& work_;
