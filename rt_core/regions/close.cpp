@@ -38,6 +38,11 @@ float margin_within(const Work& work, const Active& item, float tolerance, float
   return margin - room + (away > room ? away - room : 0);
 }
 
+/// The interval after which a course is worth its search.
+float widest_within(float tolerance) noexcept {
+  return (tolerance > kClosed ? tolerance : kClosed) - kRounding;
+}
+
 /// Searches a region from where a tick before had to leave off, or from the start. What the budget
 /// leaves of it is kept, unless another search is.
 Bounds search_on(Work& work, const Active& item, const Reach& reach, Vec3d course) noexcept {
@@ -56,7 +61,9 @@ Bounds search_on(Work& work, const Active& item, const Reach& reach, Vec3d cours
                      state.witness, reach, kept.any() ? nullptr : &kept.left);
   const double spent = before + static_cast<double>(work.pace.used() - used);
   const bool has_first = reach.first && found.best.known();
-  if (found.complete) {
+  if (found.crowded) {
+    if (begun) kept.drop();
+  } else if (found.complete) {
     if (begun) kept.drop();
     if (reach.first) return found;
     memory.pursuit.learn_search(spent);
@@ -75,15 +82,18 @@ Vec3f in_image(const PairState& pair, Vec3d way) noexcept {
 }
 
 /// @param first  ends as soon as a pair nearer than delta is known
-/// @return whether it has seen all of the region
+/// @return false where the budget ended it
 bool search_along(Work& work, Active& item, float tolerance, bool first,
                   const Course& course) noexcept {
   QueryMemory& memory = work.memory;
   const PairState& pair = work.pair_of(item);
   RegionState& state = work.state_of(item);
   const Reach reach{static_cast<float>(pair.delta) + kClosed,
-                    margin_within(work, item, tolerance, course.away), first, work.room,
-                    in_image(pair, course.way)};
+                    margin_within(work, item, tolerance, course.away),
+                    first,
+                    work.room,
+                    in_image(pair, course.way),
+                    widest_within(tolerance)};
   const std::uint64_t before = work.pace.used();
   const bool known = state.witness.known();
   const float upper = work.upper_of(item);
@@ -102,7 +112,7 @@ bool search_along(Work& work, Active& item, float tolerance, bool first,
     prove(state, pair, item.region, found.rest, course.way);
   }
   work.widen(item);
-  return found.complete;
+  return found.complete || found.crowded;
 }
 
 Course course_of(const Work& work, const Active& item) noexcept {
@@ -118,8 +128,8 @@ void search_region(Work& work, Active& item, float tolerance, bool first) noexce
     return;
   }
   const Course course = first ? Course{} : course_of(work, item);
-  const bool complete = search_along(work, item, tolerance, first, course);
-  if (first || !complete || squared_norm(course.way) == 0) return;
+  const bool ended = search_along(work, item, tolerance, first, course);
+  if (first || !ended || squared_norm(course.way) == 0) return;
   float& ahead = work.state_of(item).ahead;
   if (item.width > tolerance && item.width > kClosed) {
     // More comes near on the way than there is room for: of the present place alone, all is kept.

@@ -137,6 +137,7 @@ class Search {
 
   Bounds finish() noexcept {
     while (size_ > 0 || pending_ > 0) {
+      if (crowded_) return given_up();
       if (!pace_.go_on() || has_first()) return interrupted();
       if (size_ == 0) {
         flush();
@@ -153,9 +154,7 @@ class Search {
     return out_;
   }
 
-  bool has_first() const noexcept {
-    return reach_.first && out_.best.known() && out_.best.distance < reach_.limit;
-  }
+  bool has_first() const noexcept { return reach_.first && out_.best.nearer_than(reach_.limit); }
 
   /// The root of b against a region: the one pair whose second box is not stored.
   void visit_root(std::uint32_t a) noexcept {
@@ -272,6 +271,7 @@ class Search {
     const float dropped = scratch_.near.add(pair, most_);
     if (dropped < most_) {
       most_ = dropped;
+      crowded_ = moves_ && most_ < upper() - reach_.widest;
       lower_threshold();
     }
   }
@@ -283,11 +283,13 @@ class Search {
     }
   }
 
+  float upper() const noexcept {
+    return out_.best.nearer_than(reach_.limit) ? out_.best.distance : reach_.limit;
+  }
+
   void lower_threshold() noexcept {
-    const float best =
-        out_.best.known() && out_.best.distance < reach_.limit ? out_.best.distance : reach_.limit;
     const float known = seen_ < most_ ? seen_ : most_;
-    const float wanted = best + reach_.margin;
+    const float wanted = upper() + reach_.margin;
     threshold_ = wanted < known ? wanted : known;
     threshold_ = threshold_ > 0 ? threshold_ : 0;
     threshold_squared_ = threshold_ * threshold_;
@@ -322,6 +324,13 @@ class Search {
     return out_;
   }
 
+  /// Of the present place alone more can be proved.
+  Bounds given_up() noexcept {
+    out_.complete = false;
+    out_.crowded = true;
+    return out_;
+  }
+
   void leave() noexcept {
     left_->seen = threshold_;
     left_->size = size_;
@@ -344,6 +353,7 @@ class Search {
   float volume_a_ = 1;         // a's unit of volume, in b's
   float seen_ = kFarthest;     // pairs that were seen before, and not kept, are no nearer
   float most_ = kFarthest;     // pairs from here on have been dropped
+  bool crowded_ = false;       // and so the interval stays too wide
   Bounds out_;
   float best_squared_ = kFar;
   float threshold_ = 0;

@@ -24,6 +24,7 @@ struct Bounds {
   float rest = 0;        ///< proved for all pairs but those kept, all along the course, rounding
                          ///< subtracted; >= 0
   bool complete = true;  ///< false: the search was ended before it had seen everything
+  bool crowded = false;  ///< ended because more is near along the course than there is room for
 };
 
 /// Two children (pair_frame.hpp) that may hold something nearer.
@@ -163,6 +164,7 @@ struct Reach {
   bool first = false;               ///< end as soon as any pair nearer than limit is known
   std::uint32_t room = kNearPairs;  ///< pairs that are kept, at most
   Vec3f course{};  ///< of the region: what is proved holds all along it; in b's image coordinates
+  float widest = kFarthest;  ///< along a course, the interval that is worth a search
 };
 
 /// Depth-first search of both trees, nearest child first: what is not nearer than
@@ -174,8 +176,8 @@ struct Reach {
 /// While the region goes its course, not turning, no pair of it is nearer than it is kept with, or
 /// if it is not kept, than `rest`. Complete: rest >= min(best, limit) + margin - kRounding, or the
 /// kept pairs are all that there is room for, and rest is no less than their distances, less
-/// kRounding; best is exact. Ended before: rest and best still hold.
-/// @param left     where it is ended before: what it has not looked at; else as it was. May be null
+/// kRounding; best is exact. Ended before: rest and best still hold. Crowded: best does.
+/// @param left     where the budget ends it: what it has not looked at; else as it was. May be null
 /// Cost: the budget, or all pairs of boxes nearer than the answer. No allocation, no recursion.
 Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
               std::uint32_t region, const Witness& witness, const Reach& reach,

@@ -285,6 +285,36 @@ TEST(RegionSearch, all_along_its_course_what_is_not_kept_is_beyond_rest) {
   }
 }
 
+TEST(RegionSearch, is_given_up_where_more_comes_near_on_the_course_than_there_is_room_for) {
+  SearchedPair at(kNear);
+  regions::Reach reach = reach_along(at, {-0.1, 0, 0});
+  reach.room = 8;
+  for (const std::uint32_t region : {2u, 7u, 11u}) {
+    std::uint64_t units = 0;
+    const auto search = [&](const regions::Witness& witness) {
+      Meter meter({}, {});
+      regions::Pace pace(meter);
+      const regions::Bounds found = regions::search(regions::best_kernels(), at.frame, *at.scratch,
+                                                    pace, region, witness, reach);
+      units = meter.used();
+      return found;
+    };
+    reach.widest = regions::kFarthest;
+    const regions::Witness nearest = search({}).best;
+    const regions::Bounds whole = search(nearest);
+    const std::uint64_t units_of_whole = units;
+    ASSERT_TRUE(whole.complete);
+    ASSERT_LT(whole.rest, nearest.distance);
+    reach.widest = 0;
+    const regions::Bounds found = search(nearest);
+    EXPECT_TRUE(found.crowded);
+    EXPECT_FALSE(found.complete);
+    EXPECT_TRUE(found.best.same_pair(nearest));
+    EXPECT_EQ(found.rest, 0);
+    EXPECT_LT(units, units_of_whole) << region;
+  }
+}
+
 /// A search in pieces of so many units; the bodies move in between.
 /// @param then  called with what is known after each piece
 template <class Then>

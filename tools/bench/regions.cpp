@@ -5,8 +5,9 @@
 //                                                scenes: jaws, tips, golf, socket, screw, joint;
 //                                                default: all, with 0.01, 0.02 and 0.05; detail
 //                                                left out before baking, against all of it
-//   bench_regions TICKS growth [KERNELS]         jaws with more and more triangles at one motion
-//   bench_regions TICKS detail [KERNELS]         the same with detail left out before baking
+//   bench_regions TICKS growth [KERNELS]         jaws with more and more triangles at one motion,
+//                                                with a tolerance of force, in twenty turns
+//   bench_regions TICKS detail [KERNELS]         jaws with less and less detail left, likewise
 //   bench_regions TICKS divided [KERNELS]        all scenes at 0.02 by width of regions, against
 //                                                the exact force of those a quarter as wide
 //   bench_regions TICKS instructions             jaws by each instruction set of this processor
@@ -30,9 +31,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <initializer_list>
+#include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host_bake/models/models.hpp"
@@ -266,52 +268,97 @@ void measure_divided(int ticks, const regions::Kernels& kernels) {
   }
 }
 
-/// Interlocking jaws at the poses of the default ones, the same contact however fine they are, with
-/// detail left out of both before baking; against those that have all of it.
-/// @param deviations  the first is 0
-void measure_finer(int ticks, const regions::Kernels& kernels,
-                   std::initializer_list<double> deviations) {
-  constexpr double kDeltaRel = 0.02;
-  constexpr double kTolerance_N = 3;
-  const SceneName& jaws = kScenes[0];
+/// Interlocking jaws of so many triangles each (0: their own number), with detail left out of both.
+struct Jaws {
+  static constexpr double kDeltaRel = 0.02;
+  static constexpr double kTolerance_N = 3;
+  static constexpr SceneName kScene = kScenes[0];
+
+  explicit Jaws(std::size_t triangles = 0, double deviation = 0)
+      : a(kScene.a, kDeltaRel, bake::ForEngine::regions, triangles, deviation),
+        b(kScene.b, kDeltaRel, bake::ForEngine::regions, triangles, deviation) {
+    char text[64];
+    std::snprintf(text, sizeof text, "jaws_%zu_%zu_%g", 2 * triangles,
+                  a.view.region_triangles.size() + b.view.region_triangles.size(), deviation);
+    name = text;
+  }
+
+  double delta() const {
+    return kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
+  }
+
+  Body a, b;
+  std::string name;
+};
+
+/// The motion of the jaws with their own number of triangles, and their delta: the same contact
+/// however fine others are.
+struct SameContact {
+  explicit SameContact(const Jaws& own, int ticks)
+      : delta(own.delta()), poses(motion(Jaws::kScene, own.a, own.b, delta, ticks)) {}
+
+  Settings settings(double tolerance_N = 0) const {
+    return {.engine = EngineKind::regions, .delta_m = delta, .force_tolerance_N = tolerance_N};
+  }
+
+  double delta;
   std::vector<Pose> poses;
-  double delta = 0;
-  for (const std::size_t triangles : {0u, 160'000u, 640'000u}) {
-    std::optional<Run> truth;
-    for (const double deviation : deviations) {
-      const Body a(jaws.a, kDeltaRel, bake::ForEngine::regions, triangles, deviation);
-      const Body b(jaws.b, kDeltaRel, bake::ForEngine::regions, triangles, deviation);
-      if (poses.empty()) {
-        delta = kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
-        poses = motion(jaws, a, b, delta, ticks);
+};
+
+/// With a tolerance, turn by turn: what else the machine does meanwhile it does to all of them. A
+/// row has the times of all turns.
+void measure_growth(int ticks, const regions::Kernels& kernels) {
+  constexpr int kTurns = 20;
+  const Jaws own;
+  const SameContact same(own, ticks);
+  Bench exact_bench(own.a, own.b, same.settings());
+  exact_bench.use(kernels);
+  const Run exact = run(exact_bench, same.poses, {});
+  for (const double deviation : {0.0, 5e-4, 1e-3}) {
+    std::deque<Jaws> sizes;
+    std::deque<Bench> benches;
+    for (const std::size_t triangles : {0u, 160'000u, 640'000u, 1'000'000u}) {
+      const Jaws& jaws = sizes.emplace_back(triangles, deviation);
+      benches.emplace_back(jaws.a, jaws.b, same.settings(Jaws::kTolerance_N)).use(kernels);
+    }
+    std::vector<Run> found(sizes.size());
+    const Plan plan{.tolerance_N = Jaws::kTolerance_N};
+    for (int turn = 0; turn < kTurns; ++turn) {
+      for (std::size_t i = 0; i < sizes.size(); ++i) {
+        std::vector<double> us = std::move(found[i].us);
+        found[i] = run(benches[i], same.poses, plan);
+        found[i].us.insert(found[i].us.end(), us.begin(), us.end());
       }
-      Bench exact_bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
-      const Settings loose{
-          .engine = EngineKind::regions, .delta_m = delta, .force_tolerance_N = kTolerance_N};
-      Bench loose_bench(a, b, loose);
-      exact_bench.use(kernels);
-      loose_bench.use(kernels);
-      char name[64];
-      std::snprintf(name, sizeof name, "jaws_%zu_%zu_%g", 2 * triangles,
-                    a.view.region_triangles.size() + b.view.region_triangles.size(), deviation);
-      for (const Plan& plan : {Plan{}, Plan{.cold = true}, Plan{.budget_units = 2500}}) {
-        const Run found = run(exact_bench, poses, plan);
-        if (!truth) truth = found;
-        print_row(name, kDeltaRel, plan, found, *truth);
-      }
-      for (const bool cold : {false, true}) {
-        const Plan plan{.cold = cold, .tolerance_N = kTolerance_N};
-        print_row(name, kDeltaRel, plan, run(loose_bench, poses, plan), *truth);
-      }
+    }
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      print_row(sizes[i].name.c_str(), Jaws::kDeltaRel, plan, found[i], exact);
     }
   }
 }
 
-void measure_growth(int ticks, const regions::Kernels& kernels) {
-  measure_finer(ticks, kernels, {0});
-}
+/// Exact, under a budget and with a tolerance, against those that have all detail.
 void measure_detail(int ticks, const regions::Kernels& kernels) {
-  measure_finer(ticks, kernels, {0, 5e-4, 1e-3, 2e-3});
+  const SameContact same(Jaws(), ticks);
+  for (const std::size_t triangles : {0u, 160'000u, 640'000u}) {
+    std::optional<Run> truth;
+    for (const double deviation : {0.0, 5e-4, 1e-3, 2e-3}) {
+      const Jaws jaws(triangles, deviation);
+      Bench exact_bench(jaws.a, jaws.b, same.settings());
+      Bench loose_bench(jaws.a, jaws.b, same.settings(Jaws::kTolerance_N));
+      exact_bench.use(kernels);
+      loose_bench.use(kernels);
+      for (const Plan& plan : {Plan{}, Plan{.cold = true}, Plan{.budget_units = 2500}}) {
+        const Run found = run(exact_bench, same.poses, plan);
+        if (!truth) truth = found;
+        print_row(jaws.name.c_str(), Jaws::kDeltaRel, plan, found, *truth);
+      }
+      for (const bool cold : {false, true}) {
+        const Plan plan{.cold = cold, .tolerance_N = Jaws::kTolerance_N};
+        print_row(jaws.name.c_str(), Jaws::kDeltaRel, plan, run(loose_bench, same.poses, plan),
+                  *truth);
+      }
+    }
+  }
 }
 
 /// Those named, or none that run here.
