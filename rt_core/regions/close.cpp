@@ -19,8 +19,12 @@ constexpr float kRestShare = 0.6f;
 /// Where there is no room for what comes near on a region's course, the next one is so much
 /// shorter, down to a tick or so, and where there is again, longer.
 constexpr float kShorter = 0.5f;
-constexpr float kShortest = 0.125f;
 constexpr float kLonger = 1.2f;
+/// Where what a search keeps does not do for this share of a tick, the next ones keep nothing; by
+/// so much nearer each of them comes to another attempt.
+constexpr double kLeastLasting = 0.5;
+constexpr float kNothingKept = 0.5f * kShortestAhead;
+constexpr float kNextAttempt = 1.1f;
 /// Neighbours of a witness farther than this many delta are not looked at.
 constexpr float kClimbReach = 2;
 
@@ -29,7 +33,8 @@ constexpr float kClimbReach = 2;
 float margin_within(const Work& work, const Active& item, float tolerance, float away) noexcept {
   // The search's bound gives away kRounding, which is part of the interval.
   const float room = tolerance > kRounding ? tolerance - kRounding : 0;
-  auto margin = static_cast<float>(margin_of(work.pair_of(item)));
+  const bool kept = work.demand.limited || !work.state_of(item).keeps_nothing();
+  auto margin = kept ? static_cast<float>(margin_of(work.pair_of(item))) : 0;
   const bool slow = margin > 0;
   const bool anew = item.rest <= 0;  // a first answer soon
   if (slow && !anew && !work.demand.limited && margin < kRestShare * room) {
@@ -120,6 +125,19 @@ Course course_of(const Work& work, const Active& item) noexcept {
   return kept.state == item.state ? course_left(work, item, kept.at) : course_ahead(work, item);
 }
 
+/// Of an interval that a search has closed. Under a budget few of them are, and less is kept.
+void see_how_long_it_lasts(const Work& work, const Active& item) noexcept {
+  const PairState& pair = work.pair_of(item);
+  if (work.demand.limited || item.width > kClosed || !(margin_of(pair) > 0)) return;
+  RegionState& state = work.state_of(item);
+  if (state.keeps_nothing()) {
+    state.ahead *= kNextAttempt;
+    return;
+  }
+  const auto room = static_cast<double>(item.rest - work.upper_of(item));
+  if (room < kLeastLasting * last_motion(pair)) state.ahead = kNothingKept;
+}
+
 /// @param first  as search_along()
 void search_region(Work& work, Active& item, float tolerance, bool first) noexcept {
   if (item.width <= kClosed && item.width <= tolerance) return;
@@ -128,16 +146,18 @@ void search_region(Work& work, Active& item, float tolerance, bool first) noexce
     return;
   }
   const Course course = first ? Course{} : course_of(work, item);
-  const bool ended = search_along(work, item, tolerance, first, course);
-  if (first || !ended || squared_norm(course.way) == 0) return;
-  float& ahead = work.state_of(item).ahead;
-  if (item.width > tolerance && item.width > kClosed) {
+  if (!search_along(work, item, tolerance, first, course) || first) return;
+  if (squared_norm(course.way) > 0) {
+    float& ahead = work.state_of(item).ahead;
+    if (item.width <= tolerance || item.width <= kClosed) {
+      ahead = ahead < 1 / kLonger ? kLonger * ahead : 1;
+      return;
+    }
     // More comes near on the way than there is room for: of the present place alone, all is kept.
-    ahead = ahead > kShortest / kShorter ? kShorter * ahead : kShortest;
+    ahead = ahead > kShortestAhead / kShorter ? kShorter * ahead : kShortestAhead;
     search_along(work, item, tolerance, false, {});
-  } else {
-    ahead = ahead < 1 / kLonger ? kLonger * ahead : 1;
   }
+  see_how_long_it_lasts(work, item);
 }
 
 void climb_from_witness(Work& work, Active& item) noexcept {

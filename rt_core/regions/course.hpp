@@ -19,8 +19,9 @@ struct Course {
 };
 
 /// For the ticks to come; O(1), as course_left(). None where bodies are too fast, stand still, or
-/// have just jumped. What brings a region nearer to its witness is left out: while that comes
-/// nearer no less than anything else, the interval between them grows no wider.
+/// have just jumped, or where nothing that is kept of the region would last. What brings a region
+/// nearer to its witness is left out: while that comes nearer no less than anything else, the
+/// interval between them grows no wider.
 [[nodiscard]] Course course_ahead(const Work& work, const Active& item) noexcept;
 
 /// What is left of a course from the present place on: as far as it was to go.

@@ -122,6 +122,25 @@ TEST(RegionsRest, where_more_comes_near_than_there_is_room_for) {
   }
 }
 
+/// Where bodies that fit are so fast that nothing is known of a region for longer than a tick, a
+/// tick costs little more than one that knows nothing.
+TEST(RegionsRest, where_nothing_that_is_kept_would_last) {
+  const BakedBody inner(ball(80, 120, 0.97), kRegions);
+  const BakedBody outer(bowl(80, 120, 1), kRegions);
+  constexpr double kDelta = 0.05;
+  constexpr int kTicks = 20;
+  BakedScene scene({inner.view, outer.view}, {{0, 1}}, exact_settings(kDelta));
+  std::uint64_t units = 0;
+  std::uint64_t cold = 0;
+  for (int i = 0; i < kTicks; ++i) {
+    const Pose poses[] = {{{0.1 * kDelta * i - 0.01, 0, 0}, {}}, {}};
+    units += tick_or_fail(*scene.engine, poses).queries;
+    BakedScene fresh({inner.view, outer.view}, {{0, 1}}, exact_settings(kDelta));
+    cold += tick_or_fail(*fresh.engine, poses).queries;
+  }
+  EXPECT_LT(100 * units, 145 * cold);
+}
+
 /// A body that slides along another, by a fiftieth of delta a tick.
 TEST(RegionsRest, where_a_body_keeps_its_course) {
   const BakedBody a(bumpy_ball(40, 56, 1), kRegions);
