@@ -33,8 +33,7 @@ constexpr float kClimbReach = 2;
 float margin_within(const Work& work, const Active& item, float tolerance, float away) noexcept {
   // The search's bound gives away kRounding, which is part of the interval.
   const float room = tolerance > kRounding ? tolerance - kRounding : 0;
-  const bool kept = work.demand.limited || !work.state_of(item).keeps_nothing();
-  auto margin = kept ? static_cast<float>(margin_of(work.pair_of(item))) : 0;
+  auto margin = work.keeps_nothing(item) ? 0.0f : static_cast<float>(margin_of(work.pair_of(item)));
   const bool slow = margin > 0;
   const bool anew = item.rest <= 0;  // a first answer soon
   if (slow && !anew && !work.demand.limited && margin < kRestShare * room) {
@@ -130,7 +129,7 @@ void see_how_long_it_lasts(const Work& work, const Active& item) noexcept {
   const PairState& pair = work.pair_of(item);
   if (work.demand.limited || item.width > kClosed || !(margin_of(pair) > 0)) return;
   RegionState& state = work.state_of(item);
-  if (state.keeps_nothing()) {
+  if (work.keeps_nothing(item)) {
     state.ahead *= kNextAttempt;
     return;
   }

@@ -20,9 +20,8 @@ Vec3d way_of_witness(const Work& work, const Active& item) noexcept {
 
 Course course_ahead(const Work& work, const Active& item) noexcept {
   const levels::PairState& pair = work.pair_of(item);
-  const RegionState& state = work.state_of(item);
-  if (!(margin_of(pair) > 0) || state.keeps_nothing()) return {};
-  const double ticks = kTicksAhead * static_cast<double>(state.ahead);
+  if (!(margin_of(pair) > 0) || work.keeps_nothing(item)) return {};
+  const double ticks = kTicksAhead * static_cast<double>(work.state_of(item).ahead);
   Vec3d way = ticks * step_of(pair, item.region);
   const double length = norm(way);
   const double most = kFarthestAhead * pair.delta;

@@ -45,8 +45,6 @@ struct RegionState {
   /// Of each of `near`: its distance when it was last measured, and the way since the proof then.
   float apart[kNearPairs];
   Seeds seeds;  ///< other places of it that are followed (follow.hpp)
-
-  [[nodiscard]] bool keeps_nothing() const noexcept { return ahead < kShortestAhead; }
 };
 
 /// Of a region, in the coordinates of b.

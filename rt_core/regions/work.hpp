@@ -47,6 +47,10 @@ struct Work {
   [[nodiscard]] bool is_crossing(const Active& item) const noexcept {
     return witness_of(item).crosses();
   }
+  /// Nothing that an exact search keeps of it would last (RegionState::ahead).
+  [[nodiscard]] bool keeps_nothing(const Active& item) const noexcept {
+    return !demand.limited && state_of(item).ahead < kShortestAhead;
+  }
   /// Not thinned out (crowd.hpp).
   [[nodiscard]] bool is_present(const Active& item) const noexcept {
     return memory.crowd.has(item.state);
