@@ -19,12 +19,11 @@ constexpr float kRestShare = 0.6f;
 /// Where there is no room for what comes near on a region's course, the next one is so much
 /// shorter, down to a tick or so, and where there is again, longer.
 constexpr float kShorter = 0.5f;
+constexpr float kShortest = 0.125f;
 constexpr float kLonger = 1.2f;
-/// Where what a search keeps does not do for this share of a tick, the next ones keep nothing; by
-/// so much nearer each of them comes to another attempt.
+/// Where what a search keeps does not do for this share of a tick, so many keep nothing.
 constexpr double kLeastLasting = 0.5;
-constexpr float kNothingKept = 0.5f * kShortestAhead;
-constexpr float kNextAttempt = 1.1f;
+constexpr std::uint32_t kBareSearches = 8;
 /// Neighbours of a witness farther than this many delta are not looked at.
 constexpr float kClimbReach = 2;
 
@@ -65,10 +64,9 @@ Bounds search_on(Work& work, const Active& item, const Reach& reach, Vec3d cours
                      state.witness, reach, kept.any() ? nullptr : &kept.left);
   const double spent = before + static_cast<double>(work.pace.used() - used);
   const bool has_first = reach.first && found.best.known();
-  if (found.crowded) {
-    if (begun) kept.drop();
-  } else if (found.complete) {
-    if (begun) kept.drop();
+  if (begun && (found.complete || found.crowded)) kept.drop();
+  if (found.crowded) return found;
+  if (found.complete) {
     if (reach.first) return found;
     memory.pursuit.learn_search(spent);
     state.cost = static_cast<float>(spent);
@@ -129,12 +127,13 @@ void see_how_long_it_lasts(const Work& work, const Active& item) noexcept {
   const PairState& pair = work.pair_of(item);
   if (work.demand.limited || item.width > kClosed || !(margin_of(pair) > 0)) return;
   RegionState& state = work.state_of(item);
-  if (work.keeps_nothing(item)) {
-    state.ahead *= kNextAttempt;
-    return;
-  }
   const auto room = static_cast<double>(item.rest - work.upper_of(item));
-  if (room < kLeastLasting * last_motion(pair)) state.ahead = kNothingKept;
+  if (state.bare_searches > 0) {
+    --state.bare_searches;
+  } else if (room < kLeastLasting * last_motion(pair)) {
+    state.bare_searches = kBareSearches;
+    state.ahead = kShortest;
+  }
 }
 
 /// @param first  as search_along()
@@ -153,7 +152,7 @@ void search_region(Work& work, Active& item, float tolerance, bool first) noexce
       return;
     }
     // More comes near on the way than there is room for: of the present place alone, all is kept.
-    ahead = ahead > kShortestAhead / kShorter ? kShorter * ahead : kShortestAhead;
+    ahead = ahead > kShortest / kShorter ? kShorter * ahead : kShortest;
     search_along(work, item, tolerance, false, {});
   }
   see_how_long_it_lasts(work, item);

@@ -13,9 +13,6 @@ namespace palpate::regions {
 /// Rounding of the centres and of the odometers, in units.
 inline constexpr double kMotionSlack = 1e-9;
 
-/// RegionState::ahead of a course of a tick or so.
-inline constexpr float kShortestAhead = 0.125f;
-
 /// Where a region stood when something was proved of it, and the way from there along which the
 /// proof holds as well.
 struct Stand {
@@ -39,9 +36,10 @@ struct RegionState {
   Witness witness;
   double active_at = 0;  ///< way_of() in that tick
   float cost = 0;        ///< work units of the last search of all of it; 0: not known
-  float ahead = 1;       ///< share of the ticks for which it is given a course (course.hpp); less
-                         ///< than kShortestAhead: nothing that is kept would last
-  NearPairs near;        ///< with their least distances on the course, or less
+  float ahead = 1;       ///< share of the ticks for which it is given a course (course.hpp)
+  /// So many exact searches to come keep nothing, for it would not last.
+  std::uint32_t bare_searches = 0;
+  NearPairs near;  ///< with their least distances on the course, or less
   /// Of each of `near`: its distance when it was last measured, and the way since the proof then.
   float apart[kNearPairs];
   Seeds seeds;  ///< other places of it that are followed (follow.hpp)

@@ -164,7 +164,8 @@ struct Reach {
   bool first = false;               ///< end as soon as any pair nearer than limit is known
   std::uint32_t room = kNearPairs;  ///< pairs that are kept, at most
   Vec3f course{};  ///< of the region: what is proved holds all along it; in b's image coordinates
-  float widest = kFarthest;  ///< along a course, the interval that is worth a search
+  float widest = kFarthest;  ///< along a course: ended where what there is no room for leaves a
+                             ///< wider interval, in units
 };
 
 /// Depth-first search of both trees, nearest child first: what is not nearer than

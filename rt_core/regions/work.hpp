@@ -47,9 +47,9 @@ struct Work {
   [[nodiscard]] bool is_crossing(const Active& item) const noexcept {
     return witness_of(item).crosses();
   }
-  /// Nothing that an exact search keeps of it would last (RegionState::ahead).
+  /// In this tick, of what a search of it meets: it would not last.
   [[nodiscard]] bool keeps_nothing(const Active& item) const noexcept {
-    return !demand.limited && state_of(item).ahead < kShortestAhead;
+    return !demand.limited && state_of(item).bare_searches > 0;
   }
   /// Not thinned out (crowd.hpp).
   [[nodiscard]] bool is_present(const Active& item) const noexcept {

@@ -306,7 +306,7 @@ struct SameContact {
 };
 
 /// With a tolerance, turn by turn: what else the machine does meanwhile it does to all of them. A
-/// row has the times of all turns.
+/// row has the times of all turns; its errors are against the exact force of their own numbers.
 void measure_growth(int ticks, const regions::Kernels& kernels) {
   constexpr int kTurns = 20;
   const Jaws own;
