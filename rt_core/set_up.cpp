@@ -61,9 +61,11 @@ struct Layout {
   std::span<regions::Containment> containment;
   std::span<std::uint32_t> first_state, queue;
   std::span<regions::RegionState> regions;
+  std::span<regions::RegionPairs> kept;
   std::span<regions::Active> active;
   std::span<regions::WayOut> ways_out;
   std::span<float> swept, absence;
+  std::span<double> lasting;
   std::span<regions::SearchScratch> search;
   std::span<regions::CrossingScratch> crossing;
   std::span<regions::Unfinished> unfinished;
@@ -97,10 +99,12 @@ void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
   out.containment = arena.array<regions::Containment>(scene.pairs.size());
   out.first_state = arena.array<std::uint32_t>(scene.pairs.size());
   out.regions = arena.array<regions::RegionState>(all);
+  out.kept = arena.array<regions::RegionPairs>(all);
   out.active = arena.array<regions::Active>(all);
   out.queue = arena.array<std::uint32_t>(all);
   out.ways_out = arena.array<regions::WayOut>(regions::ways_out_for(all));
   out.swept = arena.array<float>(most);
+  out.lasting = arena.array<double>(all);
   out.absence = arena.array<float>(all);
   out.search = arena.array<regions::SearchScratch>(1);
   out.crossing = arena.array<regions::CrossingScratch>(1);
@@ -159,10 +163,12 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.regions.containment = layout.containment;
   e.regions.first_state = layout.first_state;
   e.regions.states = layout.regions;
+  e.regions.kept = layout.kept;
   e.regions.active = layout.active;
   e.regions.queue = layout.queue;
   e.regions.ways_out = layout.ways_out;
   e.regions.swept = layout.swept;
+  e.regions.lasting = layout.lasting;
   e.regions.crowd.absence = layout.absence;
   e.regions.search = layout.search.data();
   e.regions.crossing = layout.crossing.data();

@@ -110,8 +110,9 @@ bool search_along(Work& work, Active& item, float tolerance, bool first,
   if (found.rest > item.rest) {
     item.rest = found.rest;
     item.moved = 0;
-    state.near = memory.search->near;
-    prove(state, pair, item.region, found.rest, course.way);
+    RegionPairs& kept = work.kept_of(item);
+    kept.near.take(memory.search->near);
+    prove(state, kept, pair, item.region, found.rest, course.way);
   }
   work.widen(item);
   return found.complete || found.crowded;

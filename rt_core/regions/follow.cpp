@@ -67,18 +67,18 @@ class Follower {
   void measure_seeds(std::uint32_t index, auto& batch) noexcept {
     const Active& item = work_.active()[index];
     if (!is_open(item)) return;
-    RegionState& state = work_.state_of(item);
+    const Witness& witness = work_.witness_of(item);
     const PairState& pair = work_.pair_of(item);
-    Seeds& seeds = state.seeds;
+    Seeds& seeds = work_.kept_of(item).seeds;
     const auto moved = static_cast<float>((pair.travel - seeds.travel_at) +
                                           (pair.turn - seeds.turn_at) * pair.scale_a);
     seeds.travel_at = pair.travel;
     seeds.turn_at = pair.turn;
-    const float upper = below_delta(item, state.witness.distance);
+    const float upper = below_delta(item, witness.distance);
     for (std::uint32_t k = 0; k < seeds.count; ++k) {
       Witness& seed = seeds.at[k];
       seed.distance -= moved;
-      if (seed.distance < upper && !seed.same_pair(state.witness)) batch.add(index, seed);
+      if (seed.distance < upper && !seed.same_pair(witness)) batch.add(index, seed);
     }
   }
 
@@ -86,9 +86,9 @@ class Follower {
   void take(std::uint32_t index, const Witness& pair) noexcept {
     const Active& item = work_.active()[index];
     const ImageView& a = *work_.frame_of(item).a;
-    RegionState& state = work_.state_of(item);
-    note_seed(a, state.witness, state.seeds);
-    note_seed(a, pair, state.seeds);
+    Seeds& seeds = work_.kept_of(item).seeds;
+    note_seed(a, work_.witness_of(item), seeds);
+    note_seed(a, pair, seeds);
     take_if_nearer(item, pair);
   }
 
@@ -103,16 +103,16 @@ class Follower {
   void climb_witness(std::uint32_t index) noexcept {
     Active& item = work_.active()[index];
     if (!is_open(item) || !has_turn(item, kWitnessEvery)) return;
-    RegionState& state = work_.state_of(item);
+    Witness& witness = work_.witness_of(item);
     const PairFrame& frame = work_.frame_of(item);
-    climb(*work_.memory.kernels, frame, *work_.memory.search, work_.pace, state.witness, item.way);
-    note_seed(*frame.a, state.witness, state.seeds);
+    climb(*work_.memory.kernels, frame, *work_.memory.search, work_.pace, witness, item.way);
+    note_seed(*frame.a, witness, work_.kept_of(item).seeds);
     item.climbed = true;
   }
 
   void climb_seed(std::uint32_t index) noexcept {
     const Active& item = work_.active()[index];
-    Seeds& seeds = work_.state_of(item).seeds;
+    Seeds& seeds = work_.kept_of(item).seeds;
     if (!is_open(item) || seeds.count == 0 || !has_turn(item, kSeedEvery)) return;
     const PairFrame& frame = work_.frame_of(item);
     const std::uint32_t k = work_.memory.pursuit.round / kSeedEvery % seeds.count;
@@ -135,7 +135,7 @@ class Follower {
       return;
     }
     const Witness found = dive(*work_.memory.kernels, work_.frame_of(item), work_.pace, item.region,
-                               work_.state_of(item).seeds.dives++);
+                               work_.kept_of(item).seeds.dives++);
     batch.add(index, found);
   }
 

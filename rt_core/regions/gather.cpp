@@ -21,9 +21,11 @@ constexpr double kMostSwept = 0.04;
 constexpr double kLeastSwept = 128;
 constexpr double kSweptPerRegion = 0.25;
 
-/// Of image::Region::reach, with room for rounding. Odometers alone read nothing but the state, so
-/// that far regions cost next to nothing.
-constexpr double kMostReach = 1.51;
+/// How far any point of a has gone against b in all ticks, at most.
+double most_way_of(const PairState& pair) noexcept {
+  constexpr double kMostReach = 1.51;  // of image::Region::reach, with room for rounding
+  return pair.travel + pair.turn * pair.scale_a * kMostReach;
+}
 
 void limit_sweep(Work& work, std::size_t regions) noexcept {
   const double units = work.units_of_tick();
@@ -53,10 +55,13 @@ bool sweep_if_lost(Work& work, std::uint32_t index) noexcept {
         static_cast<float>(pair.delta + margin_of(pair)), swept);
   work.pace.no_limit();
   for (std::uint32_t i = 0; i < swept.size(); ++i) {
-    RegionState& state = memory.states[memory.first_state[index] + i];
-    state.near.count = 0;
-    state.seeds.count = 0;
-    prove(state, pair, i, sqrt_of(swept[i]) - kRounding);
+    const std::uint32_t at = memory.first_state[index] + i;
+    RegionState& state = memory.states[at];
+    RegionPairs& kept = memory.kept[at];
+    kept.near.count = 0;
+    kept.seeds.count = 0;
+    prove(state, kept, pair, i, sqrt_of(swept[i]) - kRounding);
+    memory.lasting[at] = static_cast<double>(state.lower) + most_way_of(pair);
   }
   return true;
 }
@@ -69,11 +74,15 @@ void gather_regions(Work& work, std::uint32_t index, bool swept) noexcept {
   const std::uint32_t first = memory.first_state[index];
   const auto regions = pair.image_a->regions;
   const double far = pair.delta + pair.deviation;
+  const double way = most_way_of(pair);
   for (std::uint32_t i = 0; i < regions.size(); ++i) {
+    double& lasting = memory.lasting[first + i];
+    if (lasting - way - kMotionSlack >= far) continue;
     const RegionState& state = memory.states[first + i];
-    if (static_cast<double>(state.lower) - way_since(state.at, pair, kMostReach) >= far) continue;
     const double moved_by = swept ? kMotionSlack : moved_since(state.at, pair, i);
     const double lower = static_cast<double>(state.lower) - moved_by;
+    // Odometers add up where regions go to and fro: from here on, of the way that is left.
+    lasting = lower + way;
     if (lower >= pair.delta) {
       if (lower < far) work.result.open_m += (far - lower) * pair.unit_m;
       continue;

@@ -18,7 +18,7 @@ double way_since_proof(const Work& work, const Active& item) noexcept {
   return way_since(work.state_of(item).at, pair, static_cast<double>(region.reach));
 }
 
-/// RegionState::apart of a pair that is so far apart now, or farther.
+/// RegionPairs::apart of a pair that is so far apart now, or farther.
 float apart_since(float distance, double way) noexcept {
   return float_below(static_cast<double>(distance) + way);
 }
@@ -34,9 +34,10 @@ class Measured {
     if (pair.distance < state.witness.distance) state.witness = pair;
     if (index != index_) k_ = 0;
     index_ = index;
-    while (k_ < state.near.count && !state.near.pairs[k_].same_pair(pair)) ++k_;
-    if (k_ == state.near.count) return;
-    state.apart[k_] = apart_since(pair.distance, way_since_proof(work_, item));
+    RegionPairs& kept = work_.kept_of(item);
+    while (k_ < kept.near.count && !kept.near.pairs[k_].same_pair(pair)) ++k_;
+    if (k_ == kept.near.count) return;
+    kept.apart[k_] = apart_since(pair.distance, way_since_proof(work_, item));
   }
 
  private:
@@ -49,26 +50,26 @@ class Measured {
 /// have moved.
 struct Doubtful {
   std::uint32_t count = 0;
-  std::uint32_t of[kNearPairs];  ///< RegionState::near
+  std::uint32_t of[kNearPairs];  ///< RegionPairs::near
 };
 
 Doubtful doubtful_of(const Work& work, const Active& item, double way) noexcept {
-  const RegionState& state = work.state_of(item);
+  const RegionPairs& kept = work.kept_of(item);
+  const Witness& witness = work.witness_of(item);
   const float upper = work.upper_of(item);
   const float nearest = upper + static_cast<float>(way + kMotionSlack);
   Doubtful doubtful;
-  for (std::uint32_t k = 0; k < state.near.count; ++k) {
-    const Witness& pair = state.near.pairs[k];
+  for (std::uint32_t k = 0; k < kept.near.count; ++k) {
+    const Witness& pair = kept.near.pairs[k];
     if (pair.distance - item.moved >= upper) break;
-    if (state.apart[k] < nearest && !pair.same_pair(state.witness))
-      doubtful.of[doubtful.count++] = k;
+    if (kept.apart[k] < nearest && !pair.same_pair(witness)) doubtful.of[doubtful.count++] = k;
   }
   return doubtful;
 }
 
 /// Leaves those that along the witness's way may be nearer, or that the budget did not do for.
 void sift(Work& work, const Active& item, double way, Doubtful& doubtful) noexcept {
-  RegionState& state = work.state_of(item);
+  RegionPairs& kept = work.kept_of(item);
   const float upper = work.upper_of(item) - kAsNear;
   std::uint32_t left = 0;
   for (std::uint32_t first = 0; first < doubtful.count; first += kBatch) {
@@ -79,7 +80,7 @@ void sift(Work& work, const Active& item, double way, Doubtful& doubtful) noexce
     if (look) {
       Witness pairs[kBatch];
       for (std::uint32_t i = 0; i < kBatch; ++i) {
-        pairs[i] = state.near.pairs[doubtful.of[first + (i < count ? i : 0)]];
+        pairs[i] = kept.near.pairs[doubtful.of[first + (i < count ? i : 0)]];
       }
       separate(*work.memory.kernels, work.frame_of(item), *work.memory.search, work.pace, pairs,
                item.way.along, apart);
@@ -87,7 +88,7 @@ void sift(Work& work, const Active& item, double way, Doubtful& doubtful) noexce
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t k = doubtful.of[first + i];
       if (look && apart[i] > upper) {
-        state.apart[k] = apart_since(apart[i], way);
+        kept.apart[k] = apart_since(apart[i], way);
       } else {
         doubtful.of[left++] = k;
       }
@@ -100,7 +101,7 @@ void sift(Work& work, const Active& item, double way, Doubtful& doubtful) noexce
 void measure(Work& work, std::uint32_t index, const Doubtful& doubtful,
              PairBatch<Measured>& batch) noexcept {
   Active& item = work.active()[index];
-  const NearPairs& near = work.state_of(item).near;
+  const NearPairs& near = work.kept_of(item).near;
   for (std::uint32_t k = 0; k < doubtful.count; ++k) {
     const Witness& pair = near.pairs[doubtful.of[k]];
     if (!work.pace.go_on()) {
@@ -119,11 +120,10 @@ void measure_kept(Work& work) noexcept {
   work.limit_to(kMostMeasured);
   for (std::uint32_t i = 0; i < work.count; ++i) {
     Active& item = work.active()[i];
-    const RegionState& state = work.state_of(item);
-    if (state.near.count == 0) continue;
+    if (work.kept_of(item).near.count == 0) continue;
     const double way = way_since_proof(work, item);
     Doubtful doubtful = doubtful_of(work, item, way);
-    if (item.way.is_of(state.witness)) sift(work, item, way, doubtful);
+    if (item.way.is_of(work.witness_of(item))) sift(work, item, way, doubtful);
     measure(work, i, doubtful, batch);
   }
   batch.measure_all();

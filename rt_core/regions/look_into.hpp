@@ -13,7 +13,7 @@ namespace palpate::regions {
 /// @param batch  a PairBatch
 void look_into(Work& work, std::uint32_t index, std::uint32_t count, auto& batch) noexcept {
   const Active& item = work.active()[index];
-  Seeds& seeds = work.state_of(item).seeds;
+  Seeds& seeds = work.kept_of(item).seeds;
   Witness found[kMostLooks];
   look(work.frame_of(item), item.region, seeds.dives, count, found);
   seeds.dives += count;

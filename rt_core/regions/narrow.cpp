@@ -115,7 +115,7 @@ class Narrowing {
   void narrow_widest(bool may_lag) noexcept {
     MinQueue<std::uint32_t, MoreUrgent> queue(work_.memory.queue, MoreUrgent{work_.active()});
     double open_m = 0;
-    felt_ = crossing_ = 0;
+    felt_ = crossing_ = wide_ = 0;
     if (begun_ != image::kNone) work_.active()[begun_].urgency = kFarthest;
     for (std::uint32_t i = 0; i < work_.count; ++i) {
       open_m += work_.width_m(work_.active()[i]);
@@ -216,14 +216,19 @@ class Narrowing {
 
   void count_in(const Active& item) noexcept {
     felt_ += counts_as_felt(item) ? 1u : 0u;
+    wide_ += counts_as_wide(item) ? 1u : 0u;
     crossing_ += work_.is_crossing(item) ? 1u : 0u;
   }
   void count_out(const Active& item) noexcept {
     felt_ -= counts_as_felt(item) ? 1u : 0u;
+    wide_ -= counts_as_wide(item) ? 1u : 0u;
     crossing_ -= work_.is_crossing(item) ? 1u : 0u;
   }
   bool counts_as_felt(const Active& item) noexcept {
     return work_.is_felt(item) && work_.is_present(item);
+  }
+  bool counts_as_wide(const Active& item) noexcept {
+    return item.width > kWide * work_.delta_of(item) && counts_as_felt(item);
   }
 
   void leave_for_report() noexcept { work_.leave_for_report(felt_, crossing_); }
@@ -270,12 +275,8 @@ class Narrowing {
     return lags_;
   }
 
-  double units_to_search() noexcept {
-    std::uint32_t wide = 0;
-    for (const Active& item : work_.active()) {
-      wide += counts_as_felt(item) && item.width > kWide * work_.delta_of(item) ? 1u : 0u;
-    }
-    return wide * pursuit_.search_units;
+  double units_to_search() const noexcept {
+    return static_cast<double>(wide_) * pursuit_.search_units;
   }
 
   /// Work units that the tick has left, about.
@@ -288,6 +289,7 @@ class Narrowing {
   std::uint32_t begun_ = image::kNone;  // of active regions: the one that is to be taken up
   std::uint64_t felt_ = 0;              // of active regions
   std::uint64_t crossing_ = 0;          // likewise
+  std::uint64_t wide_ = 0;              // of the felt ones: with wide intervals
 };
 
 }  // namespace

@@ -34,6 +34,13 @@ struct NearPairs {
   std::uint32_t room = kNearPairs;  ///< 1 to kNearPairs
   Witness pairs[kNearPairs];
 
+  /// Those of another; O(n).
+  void take(const NearPairs& other) noexcept {
+    count = other.count;
+    room = other.room;
+    for (std::uint32_t k = 0; k < count; ++k) pairs[k] = other.pairs[k];
+  }
+
   /// @return where it has dropped a pair for want of room, the distance of the nearest such, else
   /// `none`. O(1), and O(log room) where there is none; O(room) once.
   float add(const Witness& pair, float none) noexcept {

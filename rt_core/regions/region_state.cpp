@@ -49,15 +49,14 @@ double moved_since(const Stand& at, const levels::PairState& pair, std::uint32_t
          (pair.turn - at.turn) * radius + kMotionSlack;
 }
 
-void prove(RegionState& state, const levels::PairState& pair, std::uint32_t region, float rest,
-           Vec3d course) noexcept {
-  const float nearest = state.near.count > 0 ? state.near.pairs[0].distance - kRounding : rest;
+void prove(RegionState& state, RegionPairs& kept, const levels::PairState& pair,
+           std::uint32_t region, float rest, Vec3d course) noexcept {
+  const NearPairs& near = kept.near;
+  const float nearest = near.count > 0 ? near.pairs[0].distance - kRounding : rest;
   state.rest = rest;
   state.lower = nearest < rest ? nearest : rest;
   state.at = stand_of(pair, region, course);
-  for (std::uint32_t k = 0; k < state.near.count; ++k) {
-    state.apart[k] = state.near.pairs[k].distance;
-  }
+  for (std::uint32_t k = 0; k < near.count; ++k) kept.apart[k] = near.pairs[k].distance;
 }
 
 }  // namespace palpate::regions

@@ -22,14 +22,14 @@ struct Stand {
   double turn = 0;    ///< PairState::turn
 };
 
-/// What is kept of a region from tick to tick. Lengths in units of the pair.
+/// What is kept of a region from tick to tick, with its RegionPairs. Lengths in units of the pair.
 ///
 /// The proof: while the region is on its course, turned as it was where it stood `at`, every pair
-/// of its triangles and b's is in `near`, or at least `rest` apart. No distance is less than on the
-/// course by more than the region is off it (moved_since()).
+/// of its triangles and b's is in RegionPairs::near, or at least `rest` apart. No distance is less
+/// than on the course by more than the region is off it (moved_since()).
 struct RegionState {
   float rest = 0;
-  float lower = 0;  ///< the least of `rest` and of the distances of `near`
+  float lower = 0;  ///< the least of `rest` and of the distances of the kept pairs
   Stand at;
   /// Its distance is of the last tick in which the region was active: of a contact exact, else
   /// perhaps a bound from below that is no less than delta.
@@ -39,6 +39,11 @@ struct RegionState {
   float ahead = 1;       ///< share of the ticks for which it is given a course (course.hpp)
   /// So many exact searches to come keep nothing, for it would not last.
   std::uint32_t bare_searches = 0;
+};
+
+/// Pairs of triangles that are remembered of a region. Apart from its state, of which every near
+/// region is asked in every tick: states alone stay in the cache.
+struct RegionPairs {
   NearPairs near;  ///< with their least distances on the course, or less
   /// Of each of `near`: its distance when it was last measured, and the way since the proof then.
   float apart[kNearPairs];
@@ -73,9 +78,9 @@ struct RegionState {
          pair.turn * pair.scale_a * static_cast<double>(pair.image_a->regions[region].reach);
 }
 
-/// Proves that from the present poses on, along a course, the pairs which are not in state.near are
-/// at least `rest` apart.
-void prove(RegionState& state, const levels::PairState& pair, std::uint32_t region, float rest,
-           Vec3d course = {}) noexcept;
+/// Proves that from the present poses on, along a course, the pairs which are not in `kept` are at
+/// least `rest` apart.
+void prove(RegionState& state, RegionPairs& kept, const levels::PairState& pair,
+           std::uint32_t region, float rest, Vec3d course = {}) noexcept;
 
 }  // namespace palpate::regions

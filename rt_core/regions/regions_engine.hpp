@@ -63,10 +63,14 @@ struct QueryMemory {
   std::span<Containment> containment;    ///< [pairs]
   std::span<std::uint32_t> first_state;  ///< [pairs], into states
   std::span<RegionState> states;         ///< [sum over pairs of the regions of a]
+  std::span<RegionPairs> kept;           ///< [states]
   std::span<Active> active;              ///< [states]
   std::span<std::uint32_t> queue;        ///< [states]
   std::span<WayOut> ways_out;            ///< [ways_out_for(states)]
   std::span<float> swept;                ///< [most regions of one body]
+  /// [states] A bound of each region's distance and most_way_of() when it held, added. What is left
+  /// of it now tells far regions without their states.
+  std::span<double> lasting;
   std::span<Contact> contacts;           ///< [limits.contacts]
   SearchScratch* search = nullptr;
   CrossingScratch* crossing = nullptr;

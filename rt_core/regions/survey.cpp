@@ -149,13 +149,13 @@ class Survey {
 
   void take(std::uint32_t index, const Witness& pair) noexcept {
     const Active& item = work_.active()[index];
-    RegionState& state = work_.state_of(item);
+    Witness& witness = work_.witness_of(item);
     const bool was_felt = work_.is_felt(item);
     const bool crossed = work_.is_crossing(item);
-    if (state.witness.known() && !(pair.distance < state.witness.distance)) return;
-    state.witness = pair;
+    if (witness.known() && !(pair.distance < witness.distance)) return;
+    witness = pair;
     // Every look as a seed would cost a fifth of the survey.
-    if (spread_) note_seed(*work_.frame_of(item).a, pair, state.seeds);
+    if (spread_) note_seed(*work_.frame_of(item).a, pair, work_.kept_of(item).seeds);
     // Contacts take time and units, too: no more are sought than can be told.
     const bool meets = !was_felt && work_.is_felt(item);
     const bool enters = !crossed && work_.is_crossing(item);

@@ -30,6 +30,9 @@ struct Work {
   [[nodiscard]] RegionState& state_of(const Active& item) const noexcept {
     return memory.states[item.state];
   }
+  [[nodiscard]] RegionPairs& kept_of(const Active& item) const noexcept {
+    return memory.kept[item.state];
+  }
   [[nodiscard]] Witness& witness_of(const Active& item) const noexcept {
     return state_of(item).witness;
   }

@@ -195,8 +195,8 @@ TEST(RegionsContained, what_is_before_a_thin_wall_is_not_behind_it_while_its_int
   regions::QueryMemory& memory = scene.engine->regions;
   std::uint32_t back = 0;
   while (regions::normal_of(wall.view.region_triangles[back]).z >= 0) ++back;
+  for (regions::RegionPairs& kept : memory.kept) kept.near.count = 0;
   for (regions::RegionState& state : memory.states) {
-    state.near.count = 0;
     state.rest = state.lower = static_cast<float>(before.min_distance_m / memory.pairs[0].unit_m);
     state.witness.b = back;
   }
@@ -230,10 +230,8 @@ TEST(RegionsContained, corner_that_is_not_the_nearest_does_not_tell_a_side) {
                              {}};
       for (std::uint32_t face = 0; face < 4; ++face) {
         tick_or_fail(*scene.engine, poses);
-        for (regions::RegionState& state : memory.states) {
-          state.near.count = 0;
-          state.witness.b = face;
-        }
+        for (regions::RegionPairs& kept : memory.kept) kept.near.count = 0;
+        for (regions::RegionState& state : memory.states) state.witness.b = face;
         tick_or_fail(*scene.engine, poses, {.units = 1});  // measures them
         for (regions::RegionState& state : memory.states) {
           state.rest = state.lower =

@@ -437,7 +437,8 @@ TEST(RegionState, what_keeps_to_its_course_has_not_moved) {
   const double length = norm(course) / at.pair.unit_m;
   const Vec3d aside = 0.01 * across(course);
   regions::RegionState state;
-  regions::prove(state, at.pair, kRegion, 1, (1 / at.pair.unit_m) * course);
+  regions::RegionPairs kept;
+  regions::prove(state, kept, at.pair, kRegion, 1, (1 / at.pair.unit_m) * course);
   const auto moved = [&](Vec3d by) {
     levels::move(at.pair, shifted(kNear, by), {});
     return regions::moved_since(state.at, at.pair, kRegion);
@@ -455,8 +456,9 @@ TEST(RegionState, no_point_moves_farther_than_is_said) {
   for (std::uint32_t round = 0; round < 20; ++round) {
     SearchedPair at(kNear);
     regions::RegionState state;
+    regions::RegionPairs kept;
     const std::uint32_t region = round % 7;
-    regions::prove(state, at.pair, region, 1);
+    regions::prove(state, kept, at.pair, region, 1);
     const double way_before = regions::way_of(at.pair, region);
     std::vector<Vec3d> before;
     const auto place = [&](const image::RegionTriangle& t) {
@@ -511,10 +513,11 @@ void expect_kept_are_bounded(const BakedScene& s, std::uint64_t active, const Po
     out.witnesses += distance < exact - 1e-4 * pair.delta ? 1 : 0;
     const double reach = double(pair.image_a->regions[item.region].reach);
     const double way = regions::way_since(state.at, pair, reach);
-    for (std::uint32_t k = 0; k < state.near.count; ++k) {
-      const double by_proof = double(state.near.pairs[k].distance - item.moved);
-      const double by_measure = double(state.apart[k]) - way;
-      ASSERT_LE(std::max(by_proof, by_measure), truth(state.near.pairs[k]) + kRounding);
+    const regions::RegionPairs& kept = memory.kept[item.state];
+    for (std::uint32_t k = 0; k < kept.near.count; ++k) {
+      const double by_proof = double(kept.near.pairs[k].distance - item.moved);
+      const double by_measure = double(kept.apart[k]) - way;
+      ASSERT_LE(std::max(by_proof, by_measure), truth(kept.near.pairs[k]) + kRounding);
       out.near_pairs += by_measure > by_proof && by_measure >= distance ? 1 : 0;
     }
   }

@@ -18,14 +18,15 @@
 // state kept (warm) or forgotten at each tick (cold), with a tolerance of force, and under budgets
 // of time or of work units. Times are of the thread's own processor clock, so that a busy machine
 // shows in the caches only; units are those of the engine (TickResult::queries), counted and not
-// timed. force_nrmse is against the exact ticks, of their largest force, over all ticks but the
-// first ten; felt_nrmse is that of the force on display, where force_nrmse sums over regions;
-// settled_* are of the second half of the ticks; bound_of_force is the median of the certified
-// error over the largest sum; exact is the share of ticks whose regions' forces, sizes summed, miss
-// no more than a micronewton, and bound_ratio the median of the certified error over what they miss
-// in the others (0: there are none); force_step is the largest change of that sum from tick to
-// tick. Where FCL is installed, its distance of the same meshes (one least distance, OBBRSS) is
-// asked between the exact ticks, pose by pose; of_fcl is our time by its time, summed over the run.
+// timed. without_contact counts ticks that report none where the exact ones do. force_nrmse is
+// against the exact ticks, of their largest force, over all ticks but the first ten; felt_nrmse is
+// that of the force on display, where force_nrmse sums over regions; settled_* are of the second
+// half of the ticks; bound_of_force is the median of the certified error over the largest sum;
+// exact is the share of ticks whose regions' forces, sizes summed, miss no more than a micronewton,
+// and bound_ratio the median of the certified error over what they miss in the others (0: there are
+// none); force_step is the largest change of that sum from tick to tick. Where FCL is installed,
+// its distance of the same meshes (one least distance, OBBRSS) is asked between the exact ticks,
+// pose by pose; of_fcl is our time by its time, summed over the run.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -152,6 +153,15 @@ Run run(Bench& bench, const std::vector<Pose>& poses, const Plan& plan) {
   return out;
 }
 
+/// Ticks that report no contact where the exact query has one.
+int without_contact(const Run& r, const Run& exact) {
+  int count = 0;
+  for (std::size_t i = 0; i < r.contacts.size(); ++i) {
+    count += r.contacts[i] == 0 && exact.contacts[i] > 0 ? 1 : 0;
+  }
+  return count;
+}
+
 /// How far the certificate is from what is missing.
 struct Tightness {
   double exact = 0;  ///< share of the ticks that miss nothing
@@ -182,12 +192,13 @@ void print_row(const char* scene, double delta_rel, const Plan& plan, const Run&
                                     r.units.end());
   const Tightness tight = tightness(r, exact);
   std::printf(
-      "%s,%g,%s,%g,%g,%g,%.1f,%.1f,%.1f,%.0f,%.0f,%.1f,%.1f,%.4f,%.4f,%.4f,%.4f,%.2f,%.1f,%.4f",
+      "%s,%g,%s,%g,%g,%g,%.1f,%.1f,%.1f,%.0f,%.0f,%.1f,%.1f,%d,%.4f,%.4f,%.4f,%.4f,%.2f,%.1f,%.4f",
       scene, delta_rel, plan.cold ? "cold" : "warm", plan.budget_us, double(plan.budget_units),
       plan.tolerance_N, mean(r.us), percentile(r.us, 0.5), percentile(r.us, 0.99), mean(r.units),
-      mean(settled), mean(r.near), mean(r.contacts), nrmse(r.force_N, exact.force_N, kStarted),
-      nrmse(r.felt_N, exact.felt_N, kStarted), nrmse(r.felt_N, exact.felt_N, r.felt_N.size() / 2),
-      percentile(r.bound_N, 0.5) / peak, tight.exact, tight.ratio, step / peak);
+      mean(settled), mean(r.near), mean(r.contacts), without_contact(r, exact),
+      nrmse(r.force_N, exact.force_N, kStarted), nrmse(r.felt_N, exact.felt_N, kStarted),
+      nrmse(r.felt_N, exact.felt_N, r.felt_N.size() / 2), percentile(r.bound_N, 0.5) / peak,
+      tight.exact, tight.ratio, step / peak);
   if (r.fcl_us > 0) {
     std::printf(",%.1f,%.3f\n", r.fcl_us, mean(r.us) / r.fcl_us);
   } else {
@@ -425,7 +436,8 @@ int main(int argc, char** argv) {
   const int ticks = argc > 1 ? std::max(20, std::atoi(argv[1])) : 300;
   std::printf(
       "scene,delta_rel,mode,budget_us,budget_units,tolerance_N,mean_us,median_us,p99_us,units,"
-      "settled_units,near_regions,contacts,force_nrmse,felt_nrmse,settled_felt_nrmse,"
+      "settled_units,near_regions,contacts,without_contact,force_nrmse,felt_nrmse,settled_felt_"
+      "nrmse,"
       "bound_of_force,exact,bound_ratio,force_step,fcl_us,of_fcl\n");
   constexpr struct {
     const char* name;
