@@ -21,12 +21,6 @@ constexpr double kMostSwept = 0.04;
 constexpr double kLeastSwept = 128;
 constexpr double kSweptPerRegion = 0.25;
 
-/// How far any point of a has gone against b in all ticks, at most.
-double most_way_of(const PairState& pair) noexcept {
-  constexpr double kMostReach = 1.51;  // of image::Region::reach, with room for rounding
-  return pair.travel + pair.turn * pair.scale_a * kMostReach;
-}
-
 void limit_sweep(Work& work, std::size_t regions) noexcept {
   const double units = work.units_of_tick();
   if (units == std::numeric_limits<double>::infinity()) return;

@@ -78,6 +78,12 @@ struct RegionPairs {
          pair.turn * pair.scale_a * static_cast<double>(pair.image_a->regions[region].reach);
 }
 
+/// The same of any point of a.
+[[nodiscard]] inline double most_way_of(const levels::PairState& pair) noexcept {
+  constexpr double kMostReach = 1.51;  // of image::Region::reach, with room for rounding
+  return pair.travel + pair.turn * pair.scale_a * kMostReach;
+}
+
 /// Proves that from the present poses on, along a course, the pairs which are not in `kept` are at
 /// least `rest` apart.
 void prove(RegionState& state, RegionPairs& kept, const levels::PairState& pair,

@@ -68,10 +68,10 @@ struct QueryMemory {
   std::span<std::uint32_t> queue;        ///< [states]
   std::span<WayOut> ways_out;            ///< [ways_out_for(states)]
   std::span<float> swept;                ///< [most regions of one body]
-  /// [states] A bound of each region's distance and most_way_of() when it held, added. What is left
-  /// of it now tells far regions without their states.
-  std::span<double> lasting;
   std::span<Contact> contacts;           ///< [limits.contacts]
+  /// [states] A bound of each region's distance and most_way_of() when it held, added: what is left
+  /// of it tells far regions without their states.
+  std::span<double> lasting;
   SearchScratch* search = nullptr;
   CrossingScratch* crossing = nullptr;
   Unfinished* unfinished = nullptr;  ///< from tick to tick

@@ -544,6 +544,33 @@ TEST(RegionState, what_is_kept_is_measured_or_known_to_be_farther) {
   EXPECT_GT(unmeasured.near_pairs, 50);
 }
 
+/// Of what odometers alone would take for near after a while, displacements tell again what is far.
+TEST(RegionState, what_goes_to_and_fro_stays_far) {
+  constexpr double kDelta = 0.02;
+  BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, exact_settings(kDelta));
+  const regions::QueryMemory& memory = scene.engine->regions;
+  const levels::PairState& pair = memory.pairs[0];
+  int renewed = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double phase = 0.7 * i;
+    Pose pose = kNear;
+    pose.position_m += 0.2 * kDelta * Vec3d{std::sin(phase), std::cos(phase), 0};
+    pose.orientation = pose.orientation * turn({0, 0, 0.1 * kDelta * std::sin(phase)});
+    const Pose poses[2] = {pose, {}};
+    tick_or_fail(*scene.engine, poses);
+    if (i % 40 != 39) continue;
+    const std::vector<double> truth = truth_in_units(pose, pair.unit_m);
+    for (std::uint32_t region = 0; region < truth.size(); ++region) {
+      const double left = memory.lasting[region] - regions::most_way_of(pair);
+      ASSERT_LE(left, truth[region] + kRounding);
+      const regions::Stand& at = memory.states[region].at;
+      const double since = pair.travel - at.travel;
+      renewed += left >= pair.delta && double(memory.states[region].lower) - since < pair.delta;
+    }
+  }
+  EXPECT_GT(renewed, 20);
+}
+
 TEST(RegionSweep, bounds_all_regions_from_below_wherever_the_budget_ends_it) {
   SearchedPair at(kNear);
   const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);

@@ -29,6 +29,18 @@ std::vector<float> distances_of(const NearPairs& near) {
   return distances;
 }
 
+TEST(RegionNearPairs, take_what_others_keep) {
+  NearPairs others;
+  others.room = 20;
+  for (std::uint32_t i = 0; i < 100; ++i) others.add(scattered(i, 100), kFarthest);
+  NearPairs near;
+  for (std::uint32_t i = 0; i < 50; ++i) near.add(scattered(i, 50), kFarthest);
+  near.take(others);
+  EXPECT_EQ(near.room, 20u);
+  EXPECT_EQ(distances_of(near), distances_of(others));
+  EXPECT_EQ(near.add(scattered(99, 100), kFarthest), others.add(scattered(99, 100), kFarthest));
+}
+
 TEST(RegionNearPairs, keep_the_nearest_and_tell_the_nearest_that_was_dropped) {
   for (const std::uint32_t count : {1u, kNearPairs - 1, kNearPairs, kNearPairs + 1, 1000u}) {
     NearPairs near;
