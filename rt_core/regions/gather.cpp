@@ -50,12 +50,10 @@ bool sweep_if_lost(Work& work, std::uint32_t index) noexcept {
   work.pace.no_limit();
   for (std::uint32_t i = 0; i < swept.size(); ++i) {
     const std::uint32_t at = memory.first_state[index] + i;
-    RegionState& state = memory.states[at];
     RegionPairs& kept = memory.kept[at];
     kept.near.count = 0;
     kept.seeds.count = 0;
-    prove(state, kept, pair, i, sqrt_of(swept[i]) - kRounding);
-    memory.lasting[at] = static_cast<double>(state.lower) + most_way_of(pair);
+    prove(memory.states[at], kept, pair, i, sqrt_of(swept[i]) - kRounding);
   }
   return true;
 }
@@ -71,7 +69,7 @@ void gather_regions(Work& work, std::uint32_t index, bool swept) noexcept {
   const double way = most_way_of(pair);
   for (std::uint32_t i = 0; i < regions.size(); ++i) {
     double& lasting = memory.lasting[first + i];
-    if (lasting - way - kMotionSlack >= far) continue;
+    if (!swept && lasting - way - kMotionSlack >= far) continue;
     const RegionState& state = memory.states[first + i];
     const double moved_by = swept ? kMotionSlack : moved_since(state.at, pair, i);
     const double lower = static_cast<double>(state.lower) - moved_by;

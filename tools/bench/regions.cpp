@@ -436,9 +436,8 @@ int main(int argc, char** argv) {
   const int ticks = argc > 1 ? std::max(20, std::atoi(argv[1])) : 300;
   std::printf(
       "scene,delta_rel,mode,budget_us,budget_units,tolerance_N,mean_us,median_us,p99_us,units,"
-      "settled_units,near_regions,contacts,without_contact,force_nrmse,felt_nrmse,settled_felt_"
-      "nrmse,"
-      "bound_of_force,exact,bound_ratio,force_step,fcl_us,of_fcl\n");
+      "settled_units,near_regions,contacts,without_contact,force_nrmse,felt_nrmse,"
+      "settled_felt_nrmse,bound_of_force,exact,bound_ratio,force_step,fcl_us,of_fcl\n");
   constexpr struct {
     const char* name;
     void (*measure)(int ticks, const palpate::regions::Kernels& kernels);
