@@ -159,18 +159,6 @@ void search_region(Work& work, Active& item, float tolerance, bool first) noexce
   see_how_long_it_lasts(work, item);
 }
 
-void climb_from_witness(Work& work, Active& item) noexcept {
-  climb(*work.memory.kernels, work.frame_of(item), *work.memory.search, work.pace,
-        work.witness_of(item), item.way);
-  item.climbed = true;
-  work.truncated |= !work.pace.go_on();
-  work.widen(item);
-}
-
-bool may_climb(const Work& work, const Active& item) noexcept {
-  return !item.climbed && work.witness_of(item).nearer_than(kClimbReach * work.delta_of(item));
-}
-
 /// How wide a step leaves an interval.
 float next_width(const Work& work, const Active& item, float tolerance) noexcept {
   const bool last = item.width <= kLastStep * work.delta_of(item);
@@ -186,6 +174,18 @@ void seek(Work& work, Active& item, float width) noexcept {
 }
 
 }  // namespace
+
+bool may_climb(const Work& work, const Active& item) noexcept {
+  return !item.climbed && work.witness_of(item).nearer_than(kClimbReach * work.delta_of(item));
+}
+
+void climb_from_witness(Work& work, Active& item, Beside* out_beside) noexcept {
+  climb(*work.memory.kernels, work.frame_of(item), *work.memory.search, work.pace,
+        work.witness_of(item), item.way, out_beside);
+  item.climbed = true;
+  work.truncated |= !work.pace.go_on();
+  work.widen(item);
+}
 
 void close(Work& work, Active& item, float tolerance) noexcept {
   search_region(work, item, tolerance, false);

@@ -6,6 +6,12 @@
 
 namespace palpate::regions {
 
+/// It has not climbed in this tick, and its witness is near enough to be worth it.
+[[nodiscard]] bool may_climb(const Work& work, const Active& item) noexcept;
+
+/// Moves the witness to the nearest of its neighbours. Cost and out_beside: climb().
+void climb_from_witness(Work& work, Active& item, Beside* out_beside = nullptr) noexcept;
+
 /// Searches a region until its interval is at most `tolerance` (units) wide, or the budget ends:
 /// then work.truncated. Cost: search().
 void close(Work& work, Active& item, float tolerance) noexcept;

@@ -9,6 +9,7 @@
 #include "rt_core/regions/look.hpp"
 #include "rt_core/regions/motion.hpp"
 #include "rt_core/regions/survey.hpp"
+#include "rt_core/regions/track.hpp"
 
 namespace palpate::regions {
 namespace {
@@ -69,7 +70,13 @@ class Narrowing {
   explicit Narrowing(Work& work) noexcept : work_(work), pursuit_(work.memory.pursuit) {}
 
   void run() noexcept {
-    if (work_.swept && work_.demand.limited && work_.count > 0) survey_where_far_to_go();
+    if (work_.demand.limited && work_.count > 0) {
+      if (work_.swept) {
+        survey_where_far_to_go();
+      } else {
+        track(work_);
+      }
+    }
     begun_ = worth_taking_up();
     narrow_widest(work_.demand.limited && !lags_);
     if (lags_ && !work_.followed) {
@@ -97,9 +104,9 @@ class Narrowing {
   /// where too little of it holds any more, as when the bodies move fast.
   std::uint32_t worth_taking_up() noexcept {
     Unfinished& kept = *work_.memory.unfinished;
-    for (std::uint32_t i = 0; kept.any() && i < work_.count; ++i) {
+    const std::uint32_t i = kept.any() ? work_.active_of(kept.state) : image::kNone;
+    if (i != image::kNone) {
       const Active& item = work_.active()[i];
-      if (item.state != kept.state) continue;
       const levels::PairState& pair = work_.pair_of(item);
       const auto moved = static_cast<float>(moved_since(kept.at, pair, item.region));
       const float within = kept.left.seen - moved - item.rest;

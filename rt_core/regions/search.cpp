@@ -371,38 +371,54 @@ std::uint32_t neighbour(const ImageView& image, std::uint32_t triangle, std::uin
   return n == image::kNone ? triangle : n;
 }
 
-/// Itself and its neighbours within its region.
-void around_a(const ImageView& image, std::uint32_t t, std::uint32_t (&out)[4]) noexcept {
-  out[0] = t;
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    const std::uint32_t n = neighbour(image, t, i);
-    const bool same = image.region_triangles[n].region == image.region_triangles[t].region;
-    out[i + 1] = same ? n : t;
-  }
-}
-
-void around_b(const ImageView& image, std::uint32_t t, std::uint32_t (&out)[4]) noexcept {
-  out[0] = t;
-  for (std::uint32_t i = 0; i < 3; ++i) out[i + 1] = neighbour(image, t, i);
-}
-
 /// Every triangle of a about a witness's with every one of b, itself first.
-void around(const PairFrame& frame, const Witness& witness, Witness (&out)[kBatch]) noexcept {
-  std::uint32_t of_a[4];
-  std::uint32_t of_b[4];
-  around_a(*frame.a, witness.a, of_a);
-  around_b(*frame.b, witness.b, of_b);
-  for (std::uint32_t i = 0; i < kBatch; ++i) out[i] = {of_a[i / 4], of_b[i % 4]};
+struct Around {
+  Witness pairs[kBatch];
+  bool beyond[kBatch];  ///< that of a is in another region than the witness's
+};
+
+Around around(const PairFrame& frame, const Witness& witness) noexcept {
+  Around out;
+  const std::uint32_t region = frame.a->region_triangles[witness.a].region;
+  for (std::uint32_t i = 0; i < kBatch; ++i) {
+    const std::uint32_t of_a = i / 4;
+    const std::uint32_t of_b = i % 4;
+    const std::uint32_t a = of_a > 0 ? neighbour(*frame.a, witness.a, of_a - 1) : witness.a;
+    const std::uint32_t b = of_b > 0 ? neighbour(*frame.b, witness.b, of_b - 1) : witness.b;
+    out.pairs[i] = {a, b};
+    out.beyond[i] = frame.a->region_triangles[a].region != region;
+  }
+  return out;
 }
 
-/// No pair is nearer along a witness's way than the witness, which is the first.
+/// Of pairs within the region the nearest; of those as near the first.
+std::uint32_t nearest_within(const Around& at, const float (&distances)[kBatch]) noexcept {
+  std::uint32_t nearest = 0;
+  for (std::uint32_t i = 1; i < kBatch; ++i) {
+    if (!at.beyond[i] && distances[i] < distances[nearest]) nearest = i;
+  }
+  return nearest;
+}
+
+Beside nearest_beyond(const Around& at, const float (&distances)[kBatch]) noexcept {
+  Beside out;
+  for (std::uint32_t first = 4; first < kBatch; first += 4) {
+    if (!at.beyond[first]) continue;
+    std::uint32_t nearest = first;
+    for (std::uint32_t i = first + 1; i < first + 4; ++i) {
+      if (distances[i] < distances[nearest]) nearest = i;
+    }
+    out.pairs[out.count++] = {at.pairs[nearest].a, at.pairs[nearest].b, distances[nearest]};
+  }
+  return out;
+}
+
+/// No pair of the region is nearer along a witness's way than the witness, which is the first.
 bool is_lowest(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-               const Witness (&pairs)[kBatch], Vec3f along) noexcept {
+               const Around& at, Vec3f along) noexcept {
   float apart[kBatch];
-  separate(kernels, frame, scratch, pace, pairs, along, apart);
-  float least = apart[0];
-  for (const float other : apart) least = other < least ? other : least;
-  return least > apart[0] - kAsNear;
+  separate(kernels, frame, scratch, pace, at.pairs, along, apart);
+  return apart[nearest_within(at, apart)] > apart[0] - kAsNear;
 }
 
 /// The nearest of a node's children, and of those that overlap the one whose centre is.
@@ -493,23 +509,22 @@ void separate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scr
 }
 
 void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-           Witness& witness, Way way) noexcept {
+           Witness& witness, Way way, Beside* out_beside) noexcept {
+  if (out_beside != nullptr) *out_beside = {};
   for (std::uint32_t step = 0; step < kMaxClimb && pace.go_on(); ++step) {
-    Witness pairs[kBatch];
-    around(frame, witness, pairs);
-    if (way.is_of(witness) && is_lowest(kernels, frame, scratch, pace, pairs, way.along)) return;
+    const Around at = around(frame, witness);
+    if (way.is_of(witness) && is_lowest(kernels, frame, scratch, pace, at, way.along)) return;
     for (std::uint32_t i = 0; i < kBatch; ++i) {
-      scratch.batch_a[i] = pairs[i].a;
-      scratch.batch_b[i] = pairs[i].b;
+      scratch.batch_a[i] = at.pairs[i].a;
+      scratch.batch_b[i] = at.pairs[i].b;
     }
     float distances[kBatch];
     WayLanes ways;
     measure_ways(kernels, frame, scratch, pace, kBatch, distances, ways);
-    std::uint32_t nearest = 0;  // the witness itself
-    for (std::uint32_t i = 1; i < kBatch; ++i)
-      nearest = distances[i] < distances[nearest] ? i : nearest;
-    witness = {pairs[nearest].a, pairs[nearest].b, distances[nearest]};
-    if (nearest == 0) return;
+    if (out_beside != nullptr) *out_beside = nearest_beyond(at, distances);
+    const std::uint32_t nearest = nearest_within(at, distances);
+    witness = {at.pairs[nearest].a, at.pairs[nearest].b, distances[nearest]};
+    if (nearest == 0) return;  // the witness itself
     way = way_of(ways, nearest, witness);
   }
 }

@@ -140,14 +140,21 @@ inline constexpr std::uint64_t kSeparationUnits = 2;
 /// corner seem to be nearer by rounding.
 inline constexpr float kAsNear = 0.25f * kRounding;
 
+/// Of each neighbour of a triangle of a that is in another region the nearest pair measured.
+struct Beside {
+  Witness pairs[3];
+  std::uint32_t count = 0;
+};
+
 /// Goes from a witness to a neighbour of either triangle, or of both, while that is nearer; within
 /// the witness's region of a. Where one look along the witness's way tells that none is nearer by
 /// more than kAsNear, that is all: kSeparationUnits. Else at most kMaxClimb batches and as many
 /// looks.
-/// @param way  of the witness, where it is known
+/// @param way         of the witness, where it is known
+/// @param out_beside  what the last batch has measured beyond the region's border; may be null
 inline constexpr std::uint32_t kMaxClimb = 3;
 void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-           Witness& witness, Way way = {}) noexcept;
+           Witness& witness, Way way = {}, Beside* out_beside = nullptr) noexcept;
 
 /// A pair of triangles that may be near, in a part of a region: the box of one of its leaves, and
 /// down the other tree from nearest child to nearest child. Its distance is not measured.

@@ -22,6 +22,21 @@ constexpr float kNotClimbed = 5;
 
 }  // namespace
 
+std::uint32_t Work::active_of(std::uint32_t state) const noexcept {
+  const std::span<const Active> in_order = active();  // of their states, as they were gathered
+  std::uint32_t first = 0;
+  std::uint32_t end = count;
+  while (first < end) {
+    const std::uint32_t middle = (first + end) / 2;
+    if (in_order[middle].state < state) {
+      first = middle + 1;
+    } else {
+      end = middle;
+    }
+  }
+  return first < count && in_order[first].state == state ? first : image::kNone;
+}
+
 void Work::leave_for_report(std::uint64_t felt, std::uint64_t crossing) noexcept {
   const double listing = static_cast<double>(crossing) * memory.pursuit.listing_units;
   meter.expect_contacts(tail_contacts(felt, crossing));

@@ -62,6 +62,9 @@ struct Work {
     return static_cast<double>(item.width) * pair_of(item).unit_m;
   }
 
+  /// Which active region a state is of, kNone where none is. O(log count)
+  [[nodiscard]] std::uint32_t active_of(std::uint32_t state) const noexcept;
+
   /// Work units that the whole tick does for, about; infinity where nothing limits it.
   [[nodiscard]] double units_of_tick() const noexcept {
     constexpr std::uint64_t kAssumedUnit_ns = 70;  // until ticks have told

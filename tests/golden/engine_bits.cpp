@@ -64,7 +64,7 @@ const Case kCases[] = {
     {"regions, 100 units",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      100,
-     0xe83892cac1e29865},
+     0x17fe11df0f0a4da5},
     {"regions, 60 units, slowly",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      60,

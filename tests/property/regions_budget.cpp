@@ -154,6 +154,39 @@ TEST(RegionsBudget, few_near_regions_of_many_are_found_after_a_jump) {
   EXPECT_LT(most, kUnits);
 }
 
+/// A ball slides over another by half of delta a tick, with units for a few climbs and searches:
+/// where it touches is followed over the surface, from region to region.
+TEST(RegionsBudget, fast_bodies_do_not_lose_touch) {
+  bake::BakeOptions options = options_for(bake::ForEngine::regions);
+  options.delta_rel = 0.02;
+  const BakedBody ball(bake::make_model("golf_ball", 20'000), options);
+  const double radius_m = ball.view.header->radius_m;
+  const double delta_m = options.delta_rel * radius_m;
+  const Settings settings{
+      .engine = EngineKind::regions, .delta_m = delta_m, .cluster_radius_m = delta_m};
+  BakedScene exact({ball.view, ball.view}, {{0, 1}}, settings);
+  BakedScene budgeted({ball.view, ball.view}, {{0, 1}}, settings);
+  int touching = 0, lost = 0;
+  double squares = 0, peak = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double angle = 0.25 * options.delta_rel * i;
+    const double apart_m = 1.985 * radius_m;
+    const Pose poses[2] = {{{apart_m * std::cos(angle), apart_m * std::sin(angle), 0}, {}}, {}};
+    const TickResult truth = tick_or_fail(*exact.engine, poses);
+    const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = 70});
+    if (i < 20 || truth.contacts.empty()) continue;
+    ++touching;
+    lost += found.contacts.empty() ? 1 : 0;
+    squares += squared_norm(found.wrench.force_N - truth.wrench.force_N);
+    peak = std::max(peak, norm(truth.wrench.force_N));
+  }
+  const double error = std::sqrt(squares / touching) / peak;
+  RecordProperty("error", std::to_string(error));
+  EXPECT_GT(touching, 250);
+  EXPECT_EQ(lost, 0);
+  EXPECT_LT(error, 0.35);
+}
+
 TEST(RegionsBudget, every_budget_gives_a_true_certificate) {
   std::vector<double> forces;
   BakedScene exact = scene_with(kSettings);

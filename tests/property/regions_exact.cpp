@@ -125,8 +125,10 @@ TEST(RegionsRest, where_more_comes_near_than_there_is_room_for) {
 /// Where bodies that fit are so fast that nothing is known of a region for longer than a tick, a
 /// tick costs little more than one that knows nothing.
 TEST(RegionsRest, where_nothing_that_is_kept_would_last) {
-  const BakedBody inner(ball(80, 120, 0.97), kRegions);
-  const BakedBody outer(bowl(80, 120, 1), kRegions);
+  bake::BakeOptions options = options_for(kRegions);
+  options.delta_rel = 0.005;  // many regions
+  const BakedBody inner(ball(80, 120, 0.97), options);
+  const BakedBody outer(bowl(80, 120, 1), options);
   constexpr double kDelta = 0.05;
   constexpr int kTicks = 20;
   BakedScene scene({inner.view, outer.view}, {{0, 1}}, exact_settings(kDelta));
@@ -634,6 +636,39 @@ TEST(RegionSearch, a_climb_ends_early_only_where_no_neighbour_is_nearer) {
   }
   EXPECT_GT(ended, in_vain);
   EXPECT_GT(moved, 100);
+}
+
+/// What lies beyond a region's border is measured by the way, and the climb is the same.
+TEST(RegionSearch, a_climb_tells_what_is_near_in_the_regions_beside) {
+  SearchedPair at(kNear);
+  const auto regions = static_cast<std::uint32_t>(bodies().a.view.regions.size());
+  const auto& triangles = bodies().a.view.region_triangles;
+  int beyond = 0;
+  for (std::uint32_t region = 0; region < regions; ++region) {
+    for (std::uint32_t which = 0; which < 20; ++which) {
+      Meter meter({}, {});
+      regions::Pace pace(meter);
+      const regions::Witness from =
+          regions::dive(regions::best_kernels(), at.frame, pace, region, 37 * which);
+      regions::Witness alone = from, w = from;
+      regions::Beside beside;
+      regions::climb(regions::best_kernels(), at.frame, *at.scratch, pace, alone);
+      regions::climb(regions::best_kernels(), at.frame, *at.scratch, pace, w, {}, &beside);
+      ASSERT_TRUE(w.same_pair(alone));
+      ASSERT_LE(beside.count, 3u);
+      for (std::uint32_t k = 0; k < beside.count; ++k) {
+        const regions::Witness& other = beside.pairs[k];
+        ASSERT_NE(triangles[other.a].region, region);
+        float distances[regions::kBatch];
+        at.scratch->batch_a[0] = other.a;
+        at.scratch->batch_b[0] = other.b;
+        regions::measure(regions::best_kernels(), at.frame, *at.scratch, pace, 1, distances);
+        ASSERT_EQ(distances[0], other.distance);
+        ++beyond;
+      }
+    }
+  }
+  EXPECT_GT(beyond, 50);
 }
 
 TEST(RegionSearch, first_pair_and_climb_are_of_the_region_and_its_bound_holds) {
