@@ -226,11 +226,12 @@ class Divider {
 }  // namespace
 
 RegionOptions region_options(double delta_rel) {
-  constexpr double kDeltas = 8;
+  constexpr double kDelta = 0.02;   // for which this radius
+  constexpr double kRadius = 0.16;  // is the best of those measured
   constexpr double kLeast = 0.03;
   constexpr double kMost = 0.25;
   RegionOptions options;
-  options.radius = std::clamp(kDeltas * delta_rel, kLeast, kMost);
+  options.radius = std::clamp(kRadius * std::sqrt(delta_rel / kDelta), kLeast, kMost);
   return options;
 }
 

@@ -27,8 +27,9 @@ struct RegionOptions {
   double least_share = 0.25;
 };
 
-/// Regions for contacts within delta_rel: a few deltas large, for smaller ones cost time and larger
-/// ones make the force jump; never so small that a fine delta makes thousands of them.
+/// Regions for contacts within delta_rel, a little larger than a contact: two balls of radius 1
+/// that touch are within delta in a radius of sqrt(delta). Smaller ones cost time, larger ones make
+/// the force jump.
 RegionOptions region_options(double delta_rel);
 
 /// A binary tree over runs of `faces`; node 0 is the root, children follow their parent.

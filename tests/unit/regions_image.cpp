@@ -185,6 +185,16 @@ TEST(RegionTree, Leaves_are_nearly_full_and_regions_no_larger_than_asked) {
   }
 }
 
+/// As a contact's area grows in proportion to delta, so does a region's.
+TEST(RegionTree, Regions_are_as_large_as_contacts) {
+  EXPECT_EQ(bake::region_options(0.02).radius, 0.16);
+  const bake::Mesh ball = bumpy_ball(80, 100, 1);
+  const auto fine = static_cast<double>(tree_of(ball, 0.01).regions.size());
+  const auto coarse = static_cast<double>(tree_of(ball, 0.04).regions.size());
+  EXPECT_GT(fine / coarse, 2.5);
+  EXPECT_LT(fine / coarse, 6);
+}
+
 /// Least cosine between normals of one region.
 double least_cosine(const bake::RegionTree& tree) {
   double least = 1;

@@ -260,7 +260,9 @@ void measure_divided(int ticks, const regions::Kernels& kernels) {
     double delta = 0;
     std::optional<Run> truth;
     for (const double share : {0.25, 0.5, 0.75, 1.0}) {
-      const Body a(scene.a, share * kDeltaRel, bake::ForEngine::regions);
+      // Regions are as wide as the root of what they are made for
+      // (host_bake/regions/partition.hpp).
+      const Body a(scene.a, share * share * kDeltaRel, bake::ForEngine::regions);
       if (poses.empty()) {
         delta = kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
         poses = motion(scene, a, b, delta, ticks);
