@@ -8,8 +8,8 @@
 //   bench_regions TICKS growth [KERNELS]         jaws with more and more triangles at one motion,
 //                                                with a tolerance of force, in twenty turns
 //   bench_regions TICKS detail [KERNELS]         jaws with less and less detail left, likewise
-//   bench_regions TICKS divided [KERNELS]        all scenes at 0.02 by width of regions, against
-//                                                the exact force of those a quarter as wide
+//   bench_regions TICKS divided [KERNELS]        all scenes at 0.01 and 0.02 by width of regions,
+//                                                against the exact force of those a quarter as wide
 //   bench_regions TICKS instructions             jaws by each instruction set of this processor
 //
 // KERNELS: scalar, base, avx2, avx512; default: best.
@@ -221,7 +221,8 @@ void print_plans(const SceneName& scene, double delta_rel, Bench& bench,
     plans.push_back({.budget_us = budget_us});
     plans.push_back({.cold = true, .budget_us = budget_us});
   }
-  for (const std::uint64_t units : {200u, 300u, 400u, 500u, 600u, 1000u, 2500u, 5000u, 10000u}) {
+  for (const std::uint64_t units :
+       {100u, 200u, 300u, 400u, 500u, 600u, 1000u, 2500u, 5000u, 10000u}) {
     plans.push_back({.budget_units = units});
     plans.push_back({.cold = true, .budget_units = units});
   }
@@ -252,32 +253,35 @@ void measure(const SceneName& scene, const Asked& asked, int ticks) {
 }
 
 /// How much of a force is the choice of regions: of their width times a share, against a quarter.
-void measure_divided(int ticks, const regions::Kernels& kernels) {
-  constexpr double kDeltaRel = 0.02;
-  for (const SceneName& scene : kScenes) {
-    const Body b(scene.b, kDeltaRel, bake::ForEngine::regions);
-    std::vector<Pose> poses;
-    double delta = 0;
-    std::optional<Run> truth;
-    for (const double share : {0.25, 0.5, 0.75, 1.0}) {
-      // Regions are as wide as the root of what they are made for
-      // (host_bake/regions/partition.hpp).
-      const Body a(scene.a, share * share * kDeltaRel, bake::ForEngine::regions);
-      if (poses.empty()) {
-        delta = kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
-        poses = motion(scene, a, b, delta, ticks);
-      }
-      Bench bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
-      bench.use(kernels);
-      char name[64];
-      std::snprintf(name, sizeof name, "%s_%g", scene.name, share);
-      for (const Plan& plan : {Plan{}, Plan{.budget_us = 250}, Plan{.budget_units = 2500},
-                               Plan{.cold = true, .budget_units = 2500}}) {
-        const Run found = run(bench, poses, plan);
-        if (!truth) truth = found;
-        print_row(name, kDeltaRel, plan, found, *truth);
-      }
+void measure_divided(const SceneName& scene, double delta_rel, int ticks,
+                     const regions::Kernels& kernels) {
+  const Body b(scene.b, delta_rel, bake::ForEngine::regions);
+  std::vector<Pose> poses;
+  double delta = 0;
+  std::optional<Run> truth;
+  for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+    // Regions are as wide as the root of what they are made for (host_bake/regions/partition.hpp).
+    const Body a(scene.a, share * share * delta_rel, bake::ForEngine::regions);
+    if (poses.empty()) {
+      delta = delta_rel * std::min(a.view.header->radius_m, b.view.header->radius_m);
+      poses = motion(scene, a, b, delta, ticks);
     }
+    Bench bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
+    bench.use(kernels);
+    char name[64];
+    std::snprintf(name, sizeof name, "%s_%g", scene.name, share);
+    for (const Plan& plan : {Plan{}, Plan{.budget_us = 250}, Plan{.budget_units = 2500},
+                             Plan{.cold = true, .budget_units = 2500}}) {
+      const Run found = run(bench, poses, plan);
+      if (!truth) truth = found;
+      print_row(name, delta_rel, plan, found, *truth);
+    }
+  }
+}
+
+void measure_divided(int ticks, const regions::Kernels& kernels) {
+  for (const double delta_rel : {0.01, 0.02}) {
+    for (const SceneName& scene : kScenes) measure_divided(scene, delta_rel, ticks, kernels);
   }
 }
 
