@@ -226,8 +226,8 @@ class Divider {
 }  // namespace
 
 RegionOptions region_options(double delta_rel) {
-  constexpr double kDelta = 0.02;   // for which this radius
-  constexpr double kRadius = 0.16;  // is the best of those measured
+  constexpr double kRadius = 0.16;  // for contacts within this:
+  constexpr double kDelta = 0.02;
   constexpr double kLeast = 0.03;
   constexpr double kMost = 0.25;
   RegionOptions options;

@@ -27,9 +27,10 @@ struct RegionOptions {
   double least_share = 0.25;
 };
 
-/// Regions for contacts within delta_rel, a little larger than a contact: two balls of radius 1
-/// that touch are within delta in a radius of sqrt(delta). Smaller ones cost time, larger ones make
-/// the force jump.
+/// Regions for contacts within delta_rel, which is relative to the object's radius, above zero: a
+/// little larger than a contact, for two balls of radius 1 that touch are within delta in a radius
+/// of sqrt(delta). Smaller ones cost time, larger ones make the force jump (docs/BENCHMARKS.md,
+/// `bench_regions ... divided`). Between .03 and .25 whatever delta_rel. O(1)
 RegionOptions region_options(double delta_rel);
 
 /// A binary tree over runs of `faces`; node 0 is the root, children follow their parent.

@@ -64,7 +64,7 @@ struct QueryMemory {
   std::span<std::uint32_t> first_state;  ///< [pairs], into states
   std::span<RegionState> states;         ///< [sum over pairs of the regions of a]
   std::span<RegionPairs> kept;           ///< [states]
-  std::span<Active> active;              ///< [states]
+  std::span<Active> active;              ///< [states], those of a tick in the order of their states
   std::span<std::uint32_t> queue;        ///< [states]
   std::span<WayOut> ways_out;            ///< [ways_out_for(states)]
   std::span<float> swept;                ///< [most regions of one body]
@@ -112,15 +112,15 @@ struct Demand {
 /// measured at the present poses and bound the distances from above. That is exact for as long as
 /// no other pair can have come as near; then the region is searched again (search.hpp), under a
 /// budget the widest interval first and closed in steps, after a cheap look at the witness's
-/// neighbours. One search that the budget ends goes on in the next tick, before all others
-/// (unfinished.hpp). A tolerance is shared so that what costs more to search may stay open wider. A
-/// budget that is far too small for the searches goes to following the witnesses instead where that
-/// brings them nearer (follow.hpp). After a jump the deepest contacts go first, and a survey comes
-/// before the searches where the budget is small for them (survey.hpp). Whatever ends it, every
-/// interval holds its distance, and every witness nearer than delta is a contact, or as many of
-/// them as there is time to report (crowd.hpp). Where triangles cross, the pieces that they belong
-/// to give the depth and the curve in which they do the direction (crossing.hpp); for that, at most
-/// half of a budget is left.
+/// neighbours. Witnesses of fast bodies climb before all searches (track.hpp). One search that the
+/// budget ends goes on in the next tick, before all others (unfinished.hpp). A tolerance is shared
+/// so that what costs more to search may stay open wider. A budget that is far too small for the
+/// searches goes to following the witnesses instead where that brings them nearer (follow.hpp).
+/// After a jump the deepest contacts go first, and a survey comes before the searches where the
+/// budget is small for them (survey.hpp). Whatever ends it, every interval holds its distance, and
+/// every witness nearer than delta is a contact, or as many of them as there is time to report
+/// (crowd.hpp). Where triangles cross, the pieces that they belong to give the depth and the curve
+/// in which they do the direction (crossing.hpp); for that, at most half of a budget is left.
 ///
 /// A contact's pieces are those of level 0 that hold the witnesses. Stages and counts go to the
 /// tally. Cost: the budget, plus O(regions), plus one witness of each near region.

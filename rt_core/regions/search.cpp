@@ -371,6 +371,10 @@ std::uint32_t neighbour(const ImageView& image, std::uint32_t triangle, std::uin
   return n == image::kNone ? triangle : n;
 }
 
+/// A triangle and its neighbours.
+constexpr std::uint32_t kAround = 4;
+static_assert(kAround * kAround == kBatch);
+
 /// Every triangle of a about a witness's with every one of b, itself first.
 struct Around {
   Witness pairs[kBatch];
@@ -381,8 +385,8 @@ Around around(const PairFrame& frame, const Witness& witness) noexcept {
   Around out;
   const std::uint32_t region = frame.a->region_triangles[witness.a].region;
   for (std::uint32_t i = 0; i < kBatch; ++i) {
-    const std::uint32_t of_a = i / 4;
-    const std::uint32_t of_b = i % 4;
+    const std::uint32_t of_a = i / kAround;
+    const std::uint32_t of_b = i % kAround;
     const std::uint32_t a = of_a > 0 ? neighbour(*frame.a, witness.a, of_a - 1) : witness.a;
     const std::uint32_t b = of_b > 0 ? neighbour(*frame.b, witness.b, of_b - 1) : witness.b;
     out.pairs[i] = {a, b};
@@ -402,10 +406,10 @@ std::uint32_t nearest_within(const Around& at, const float (&distances)[kBatch])
 
 Beside nearest_beyond(const Around& at, const float (&distances)[kBatch]) noexcept {
   Beside out;
-  for (std::uint32_t first = 4; first < kBatch; first += 4) {
+  for (std::uint32_t first = kAround; first < kBatch; first += kAround) {
     if (!at.beyond[first]) continue;
     std::uint32_t nearest = first;
-    for (std::uint32_t i = first + 1; i < first + 4; ++i) {
+    for (std::uint32_t i = first + 1; i < first + kAround; ++i) {
       if (distances[i] < distances[nearest]) nearest = i;
     }
     out.pairs[out.count++] = {at.pairs[nearest].a, at.pairs[nearest].b, distances[nearest]};

@@ -23,7 +23,7 @@ constexpr float kNotClimbed = 5;
 }  // namespace
 
 std::uint32_t Work::active_of(std::uint32_t state) const noexcept {
-  const std::span<const Active> in_order = active();  // of their states, as they were gathered
+  const std::span<const Active> in_order = active();
   std::uint32_t first = 0;
   std::uint32_t end = count;
   while (first < end) {
