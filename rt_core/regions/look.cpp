@@ -6,24 +6,6 @@
 namespace palpate::regions {
 namespace {
 
-struct Point {
-  float x, y, z;
-};
-
-Point centre_of(const image::RegionTriangle& t) noexcept {
-  constexpr float kThird = 1.0f / 3;
-  const float* c = t.corners;
-  return {kThird * (c[0] + c[3] + c[6]), kThird * (c[1] + c[4] + c[7]),
-          kThird * (c[2] + c[5] + c[8])};
-}
-
-Point mapped(const Transform& m, Point p) noexcept {
-  const float* r = m.rotation;
-  return {m.scale * (r[0] * p.x + r[1] * p.y + r[2] * p.z) + m.translation[0],
-          m.scale * (r[3] * p.x + r[4] * p.y + r[5] * p.z) + m.translation[1],
-          m.scale * (r[6] * p.x + r[7] * p.y + r[8] * p.z) + m.translation[2]};
-}
-
 /// Of `cells` along an axis; what lies outside is in the outermost one.
 std::uint32_t cell_at(float along, float per_length, std::uint32_t cells) noexcept {
   const float at = along * per_length;
@@ -32,7 +14,7 @@ std::uint32_t cell_at(float along, float per_length, std::uint32_t cells) noexce
 }
 
 /// Where the triangle near a point is kept.
-const std::uint32_t* place_of(const ImageView& image, Point p) noexcept {
+const std::uint32_t* place_of(const ImageView& image, Vec3f p) noexcept {
   using image::kBrickEdge;
   const image::ProximityGrid& grid = *image.proximity_grid;
   const float per_length = 1 / grid.cell;
@@ -56,31 +38,36 @@ std::uint32_t triangle_of(const image::RegionRun& run, std::uint32_t look) noexc
   return run.first + static_cast<std::uint32_t>((part & 0xffffffffu) * run.count >> 32);
 }
 
-/// Names what is near `count` triangles of a. Each pass asks for what the next one reads.
-void find_near(const PairFrame& frame, std::uint32_t count, Witness (&out)[kMostLooks]) noexcept {
+}  // namespace
+
+std::uint32_t near_place(const PairFrame& frame, Vec3f place) noexcept {
+  PALPATE_ASSERT(can_look(frame));
+  return *place_of(*frame.b, place) & ~image::kCoarseBrick;
+}
+
+/// Each pass asks for what the next one reads.
+void look_from(const PairFrame& frame, std::uint32_t count, Witness (&pairs)[kMostLooks]) noexcept {
   for (std::uint32_t i = 0; i < count; ++i) {
-    __builtin_prefetch(&frame.a->region_triangles[out[i].a]);
+    __builtin_prefetch(&frame.a->region_triangles[pairs[i].a]);
   }
   const std::uint32_t* places[kMostLooks];
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Point centre = centre_of(frame.a->region_triangles[out[i].a]);
-    places[i] = place_of(*frame.b, mapped(frame.a_to_b, centre));
+    const Vec3f centre = centre_of(frame.a->region_triangles[pairs[i].a]);
+    places[i] = place_of(*frame.b, at_place(frame.a_to_b, centre));
     __builtin_prefetch(places[i]);
   }
   for (std::uint32_t i = 0; i < count; ++i) {
-    out[i].b = *places[i] & ~image::kCoarseBrick;
-    __builtin_prefetch(&frame.b->region_triangles[out[i].b]);
+    pairs[i].b = *places[i] & ~image::kCoarseBrick;
+    __builtin_prefetch(&frame.b->region_triangles[pairs[i].b]);
   }
 }
-
-}  // namespace
 
 void look(const PairFrame& frame, std::uint32_t region, std::uint32_t from, std::uint32_t count,
           Witness (&out)[kMostLooks]) noexcept {
   PALPATE_ASSERT(count <= kMostLooks && can_look(frame));
   const image::RegionRun& run = frame.a->region_runs[region];
   for (std::uint32_t i = 0; i < count; ++i) out[i] = {triangle_of(run, from + i), 0, 0};
-  find_near(frame, count, out);
+  look_from(frame, count, out);
 }
 
 std::uint32_t look_beside(const PairFrame& frame, std::uint32_t region, std::uint32_t triangle,
@@ -95,7 +82,7 @@ std::uint32_t look_beside(const PairFrame& frame, std::uint32_t region, std::uin
   for (; found < wanted; ++next) {
     if (next != triangle) out[found++] = {next, 0, 0};
   }
-  find_near(frame, found, out);
+  look_from(frame, found, out);
   return found;
 }
 

@@ -19,6 +19,31 @@ inline bool can_look(const PairFrame& frame) noexcept {
   return frame.b->proximity_grid != nullptr && !frame.a->region_runs.empty();
 }
 
+inline Vec3f centre_of(const image::RegionTriangle& t) noexcept {
+  constexpr float kThird = 1.0f / 3;
+  const float* c = t.corners;
+  return {kThird * (c[0] + c[3] + c[6]), kThird * (c[1] + c[4] + c[7]),
+          kThird * (c[2] + c[5] + c[8])};
+}
+
+/// A place of one body in the image coordinates of the other.
+inline Vec3f at_place(const Transform& m, Vec3f p) noexcept {
+  const float* r = m.rotation;
+  return {m.scale * (r[0] * p.x + r[1] * p.y + r[2] * p.z) + m.translation[0],
+          m.scale * (r[3] * p.x + r[4] * p.y + r[5] * p.z) + m.translation[1],
+          m.scale * (r[6] * p.x + r[7] * p.y + r[8] * p.z) + m.translation[2]};
+}
+
+/// The triangle of b that its proximity grid names at a place in the coordinates of b's image.
+/// Precondition: can_look(frame). O(1)
+std::uint32_t near_place(const PairFrame& frame, Vec3f place) noexcept;
+
+/// Looks from triangles of a, which are given.
+/// @param count  at most kMostLooks
+/// @param pairs  `a` is read, `b` is written
+/// Precondition: can_look(frame). O(count)
+void look_from(const PairFrame& frame, std::uint32_t count, Witness (&pairs)[kMostLooks]) noexcept;
+
 /// Triangles of a region, spread over it, each with the triangle of b that b's proximity grid names
 /// where its centre lies (closest point transforms: Mauch 2000). Their distances are not measured.
 ///

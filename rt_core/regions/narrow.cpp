@@ -8,6 +8,7 @@
 #include "rt_core/regions/follow.hpp"
 #include "rt_core/regions/look.hpp"
 #include "rt_core/regions/motion.hpp"
+#include "rt_core/regions/scout.hpp"
 #include "rt_core/regions/survey.hpp"
 #include "rt_core/regions/track.hpp"
 
@@ -47,6 +48,9 @@ constexpr double kFollowWorth = 2;
 /// In a tick, all regions together, in contact tolerances: less is what witnesses waver by.
 constexpr double kLeastGain = 0.006;
 
+/// For some contact of bodies that have lost all, of what the tick has left: a half leaves too
+/// little to prove, a quarter finds none in the smallest budgets.
+constexpr double kMostScouted = 1.0 / 3;
 /// A search goes on from the tick before for this share of what is left, the rest being for what is
 /// new: and where what is left of it can make the interval narrower by this share at least, after
 /// all motion since.
@@ -75,6 +79,7 @@ class Narrowing {
         survey_where_far_to_go();
       } else {
         track(work_);
+        scout_where_lost();
       }
     }
     begun_ = worth_taking_up();
@@ -91,6 +96,22 @@ class Narrowing {
   }
 
  private:
+  /// Fast bodies leave their contacts behind between two ticks.
+  void scout_where_lost() noexcept {
+    for (const Active& item : work_.active()) {
+      if (work_.is_felt(item) && work_.is_present(item)) return;
+    }
+    for (std::uint32_t i = 0; i < work_.memory.pairs.size() && work_.pace.go_on(); ++i) {
+      if (margin_of(work_.memory.pairs[i]) > 0) continue;
+      const std::uint32_t state = scout(work_, i, kMostScouted);
+      const std::uint32_t index = state != image::kNone ? work_.active_of(state) : image::kNone;
+      if (index == image::kNone) continue;
+      work_.active()[index].climbed = false;
+      work_.widen(work_.active()[index]);
+    }
+    work_.truncated = !work_.pace.go_on();
+  }
+
   /// An interval may stay open by this much, but not down to zero: what crosses has a depth, of
   /// which the interval says nothing.
   float share_of(const Active& item) noexcept {

@@ -65,12 +65,15 @@ struct Work {
   /// Which active region a state is of, kNone where none is. O(log count)
   [[nodiscard]] std::uint32_t active_of(std::uint32_t state) const noexcept;
 
-  /// Work units that the whole tick does for, about; infinity where nothing limits it.
-  [[nodiscard]] double units_of_tick() const noexcept {
-    constexpr std::uint64_t kAssumedUnit_ns = 70;  // until ticks have told
-    const std::uint64_t unit_ns = memory.pursuit.unit_ns;
-    return meter.queries_in_all(unit_ns > 0 ? unit_ns : kAssumedUnit_ns);
+  /// What one takes, about.
+  [[nodiscard]] std::uint64_t unit_ns() const noexcept {
+    constexpr std::uint64_t kAssumed_ns = 70;  // until ticks have told
+    return memory.pursuit.unit_ns > 0 ? memory.pursuit.unit_ns : kAssumed_ns;
   }
+  /// Work units that the whole tick does for, about; infinity where nothing limits it.
+  [[nodiscard]] double units_of_tick() const noexcept { return meter.queries_in_all(unit_ns()); }
+  /// The same of what is left.
+  [[nodiscard]] double units_left() const noexcept { return meter.queries_affordable(unit_ns()); }
 
   /// What is kept is measured in the ticks to come, and what is not ends a search sooner: of a
   /// region no more than a tick of so many units does for.
@@ -82,9 +85,10 @@ struct Work {
   }
 
   /// Until pace.no_limit(), of what the tick has left no more than this share.
-  void limit_to(double share) noexcept {
+  void limit_to(double share) noexcept { limit_to_units(share * units_left()); }
+  /// Likewise; any number.
+  void limit_to_units(double units) noexcept {
     constexpr double kEndless = 1e18;
-    const double units = share * meter.queries_affordable(memory.pursuit.unit_ns);
     if (units < kEndless) pace.limit(static_cast<std::uint64_t>(units));
   }
 

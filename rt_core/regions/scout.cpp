@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/scout.hpp"
+
+#include "rt_core/base/queue.hpp"
+#include "rt_core/regions/look.hpp"
+#include "rt_core/regions/named_box.hpp"
+
+namespace palpate::regions {
+namespace {
+
+using image::RegionNode;
+
+/// What is below a box is about as near as its centre, less this share of its radius. With less,
+/// places that are not quite near enough are gone through to their ends; with more, all places are
+/// gone into alike.
+constexpr float kNearerBelow = 0.7f;
+static_assert(kMostLooks == kBatch);
+/// Boxes that wait; of more the farthest are not looked into.
+constexpr std::uint32_t kMostWaiting = 128;
+
+/// Sixteen looks and their batch, which are never begun with less: half of a tick or less does for
+/// what is begun at its end, too.
+constexpr double kFewestUnits = kMostLooks / kLooksPerUnit + kBatchUnits;
+
+struct Place {
+  float apart = 0;  ///< of what is nearest below it, about
+  std::uint32_t node = 0;
+};
+
+struct Nearer {
+  bool operator()(const Place& x, const Place& y) const noexcept {
+    return x.apart < y.apart || (x.apart == y.apart && x.node < y.node);
+  }
+};
+
+class Scout {
+ public:
+  Scout(Work& work, std::uint32_t pair) noexcept
+      : kernels_(*work.memory.kernels),
+        frame_(work.memory.frames[pair]),
+        scratch_(*work.memory.search),
+        pace_(work.pace),
+        limit_(static_cast<float>(work.memory.pairs[pair].delta)),
+        unit_of_b_(sqrt_of(frame_.scale2_b)),
+        waiting_(places_, Nearer{}) {}
+
+  Witness run() noexcept {
+    Witness found = look_everywhere();
+    if (!found.known() && pace_.go_on()) visit(0, found);
+    while (!found.known() && !waiting_.empty() && pace_.go_on()) {
+      const std::uint32_t node = waiting_.top().node;
+      waiting_.pop();
+      visit(node, found);
+    }
+    return found;
+  }
+
+ private:
+  /// From a triangle of each of sixteen regions that lie apart.
+  Witness look_everywhere() noexcept {
+    const auto regions = static_cast<std::uint32_t>(frame_.a->region_runs.size());
+    const std::uint32_t count = regions < kMostLooks ? regions : kMostLooks;
+    Witness pairs[kMostLooks];
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const image::RegionRun& run = frame_.a->region_runs[i * (regions / count)];
+      pairs[i] = {run.first + run.count / 2, 0, 0};
+    }
+    look_from(frame_, count, pairs);
+    return nearest_of(count, pairs);
+  }
+
+  void visit(std::uint32_t node, Witness& found) noexcept {
+    const std::uint32_t region = frame_.a->region_nodes[node].region;
+    if (region == image::kNone) {
+      push_below(node);
+      return;
+    }
+    Witness pairs[kMostLooks];
+    look(frame_, region, 0, kMostLooks, pairs);
+    found = nearest_of(kMostLooks, pairs);
+  }
+
+  void push_below(std::uint32_t index) noexcept {
+    const RegionNode& node = frame_.a->region_nodes[index];
+    pace_.charge(node.children / kLooksPerUnit);
+    for (std::uint32_t i = 0; i < node.children; ++i) {
+      const Vec3f centre = {node.centre[0][i], node.centre[1][i], node.centre[2][i]};
+      const Vec3f place = at_place(frame_.a_to_b, centre);
+      const Vec3f near = centre_of(frame_.b->region_triangles[near_place(frame_, place)]);
+      const float apart = unit_of_b_ * norm(place - near);
+      const float radius = sqrt_of(frame_.scale2_a * size2_of(node, i));
+      if (apart - radius < limit_ && waiting_.items().size() < kMostWaiting) {
+        waiting_.push({apart - kNearerBelow * radius, node.first + i});
+      }
+    }
+  }
+
+  /// Of those that have been looked up, where it is nearer than the limit.
+  Witness nearest_of(std::uint32_t count, const Witness (&pairs)[kMostLooks]) noexcept {
+    pace_.charge(count / kLooksPerUnit);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      scratch_.batch_a[i] = pairs[i].a;
+      scratch_.batch_b[i] = pairs[i].b;
+    }
+    float distances[kBatch];
+    measure(kernels_, frame_, scratch_, pace_, count, distances);
+    std::uint32_t nearest = 0;
+    for (std::uint32_t i = 1; i < count; ++i) {
+      if (distances[i] < distances[nearest]) nearest = i;
+    }
+    const Witness found = {pairs[nearest].a, pairs[nearest].b, distances[nearest]};
+    return found.nearer_than(limit_) ? found : Witness{};
+  }
+
+  const Kernels& kernels_;
+  const PairFrame& frame_;
+  SearchScratch& scratch_;
+  Pace& pace_;
+  float limit_;
+  float unit_of_b_;
+  Place places_[kMostWaiting];
+  MinQueue<Place, Nearer> waiting_;
+};
+
+}  // namespace
+
+std::uint32_t scout(Work& work, std::uint32_t pair, double share) noexcept {
+  const QueryMemory& memory = work.memory;
+  const PairFrame& frame = memory.frames[pair];
+  if (!can_look(frame) || !work.pace.go_on()) return image::kNone;
+  const double units = share * work.units_left();
+  if (units < kFewestUnits) return image::kNone;
+  work.limit_to_units(units);
+  const Witness found = Scout(work, pair).run();
+  work.pace.no_limit();
+  if (!found.known()) return image::kNone;
+  const std::uint32_t region = frame.a->region_triangles[found.a].region;
+  const std::uint32_t state = memory.first_state[pair] + region;
+  memory.states[state].witness = found;
+  return state;
+}
+
+}  // namespace palpate::regions
