@@ -21,6 +21,9 @@ constexpr std::uint32_t kMostWaiting = 128;
 /// Sixteen looks and their batch, which are never begun with less: half of a tick or less does for
 /// what is begun at its end, too.
 constexpr double kFewestUnits = kMostLooks / kLooksPerUnit + kBatchUnits;
+/// Nearly all contacts are found with half of these. Where there is none there are many places that
+/// are not quite near enough.
+constexpr double kMostUnits = 100;
 
 struct Place {
   float apart = 0;  ///< of what is nearest below it, about
@@ -128,9 +131,10 @@ std::uint32_t scout(Work& work, std::uint32_t pair, double share) noexcept {
   const QueryMemory& memory = work.memory;
   const PairFrame& frame = memory.frames[pair];
   if (!can_look(frame) || !work.pace.go_on()) return image::kNone;
-  const double units = share * work.units_left();
+  const double most = share * work.units_left();
+  const double units = most < kMostUnits ? most : kMostUnits;
   if (units < kFewestUnits) return image::kNone;
-  work.limit_to_units(units);
+  work.pace.limit(static_cast<std::uint64_t>(units));
   const Witness found = Scout(work, pair).run();
   work.pace.no_limit();
   if (!found.known()) return image::kNone;

@@ -85,10 +85,9 @@ struct Work {
   }
 
   /// Until pace.no_limit(), of what the tick has left no more than this share.
-  void limit_to(double share) noexcept { limit_to_units(share * units_left()); }
-  /// Likewise; any number.
-  void limit_to_units(double units) noexcept {
+  void limit_to(double share) noexcept {
     constexpr double kEndless = 1e18;
+    const double units = share * units_left();
     if (units < kEndless) pace.limit(static_cast<std::uint64_t>(units));
   }
 
