@@ -20,7 +20,7 @@ constexpr std::uint32_t kMostWaiting = 128;
 
 /// Sixteen looks and their batch, which are never begun with less: half of a tick or less does for
 /// what is begun at its end, too.
-constexpr double kFewestUnits = kMostLooks / kLooksPerUnit + kBatchUnits;
+constexpr std::uint64_t kFewestUnits = kMostLooks / kLooksPerUnit + kBatchUnits;
 /// Nearly all contacts are found with half of these. Where there is none there are many places that
 /// are not quite near enough.
 constexpr double kMostUnits = 100;
@@ -133,7 +133,7 @@ std::uint32_t scout(Work& work, std::uint32_t pair, double share) noexcept {
   if (!can_look(frame) || !work.pace.go_on()) return image::kNone;
   const double most = share * work.units_left();
   const double units = most < kMostUnits ? most : kMostUnits;
-  if (units < kFewestUnits) return image::kNone;
+  if (units < static_cast<double>(kFewestUnits)) return image::kNone;
   work.pace.limit(static_cast<std::uint64_t>(units));
   const Witness found = Scout(work, pair).run();
   work.pace.no_limit();
