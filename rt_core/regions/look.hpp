@@ -19,6 +19,7 @@ inline bool can_look(const PairFrame& frame) noexcept {
   return frame.b->proximity_grid != nullptr && !frame.a->region_runs.empty();
 }
 
+/// In image coordinates.
 inline Vec3f centre_of(const image::RegionTriangle& t) noexcept {
   constexpr float kThird = 1.0f / 3;
   const float* c = t.corners;
@@ -26,7 +27,7 @@ inline Vec3f centre_of(const image::RegionTriangle& t) noexcept {
           kThird * (c[2] + c[5] + c[8])};
 }
 
-/// A place of one body in the image coordinates of the other.
+/// A place in the image coordinates of one body in those of the other.
 inline Vec3f at_place(const Transform& m, Vec3f p) noexcept {
   const float* r = m.rotation;
   return {m.scale * (r[0] * p.x + r[1] * p.y + r[2] * p.z) + m.translation[0],

@@ -14,10 +14,10 @@ using image::RegionNode;
 /// places that are not quite near enough are gone through to their ends; with more, all places are
 /// gone into alike.
 constexpr float kNearerBelow = 0.7f;
-static_assert(kMostLooks == kBatch);
-/// Boxes that wait; of more the farthest are not looked into.
+/// Boxes that wait; what would be more is not looked into.
 constexpr std::uint32_t kMostWaiting = 128;
 
+static_assert(kMostLooks == kBatch);
 /// Sixteen looks and their batch, which are never begun with less: half of a tick or less does for
 /// what is begun at its end, too.
 constexpr std::uint64_t kFewestUnits = kMostLooks / kLooksPerUnit + kBatchUnits;

@@ -8,9 +8,9 @@ namespace palpate::regions {
 
 /// Gives a region of a pair a witness nearer than delta, where one is found for a share of what the
 /// tick has left, and no more than a hundred units. Descends a's tree alone, always where it seems
-/// nearest: the centres of boxes are looked up in b's proximity grid (look.hpp), and of a region
-/// sixteen triangles, whose pairs are measured. Of surfaces that fit each other, one look at each
-/// of sixteen regions does.
+/// nearest (best first: Hjaltason and Samet 1999): the centres of boxes are looked up in b's
+/// proximity grid (look.hpp), and of a region sixteen triangles, whose pairs are measured. Of
+/// surfaces that fit each other, one look at each of sixteen regions does.
 ///
 /// Nothing is proved by that. It takes a third of what a search of both trees takes that ends with
 /// the first pair near enough (docs/TRIED.md, "Any contact first").

@@ -187,20 +187,33 @@ TEST(RegionsBudget, fast_bodies_do_not_lose_touch) {
   EXPECT_LT(error, 0.35);
 }
 
+/// Two models and the settings of their scene, delta relative to the first one's radius.
+struct Models {
+  Models(const char* of_a, const char* of_b, std::size_t triangles, double delta_rel)
+      : a(bake::make_model(of_a, triangles), options(delta_rel)),
+        b(bake::make_model(of_b, triangles), options(delta_rel)) {
+    settings.delta_m = settings.cluster_radius_m = delta_rel * a.view.header->radius_m;
+  }
+  static bake::BakeOptions options(double delta_rel) {
+    bake::BakeOptions made = options_for(bake::ForEngine::regions);
+    made.delta_rel = delta_rel;
+    return made;
+  }
+  BakedScene scene() const { return {{a.view, b.view}, {{0, 1}}, settings}; }
+
+  BakedBody a, b;
+  Settings settings{.engine = EngineKind::regions};
+};
+
 /// Where the ball touches is not known, and what a tick has does not do for ruling out the rest.
 TEST(RegionsBudget, however_little_there_is_after_a_jump_some_contact_is_known) {
-  bake::BakeOptions options = options_for(bake::ForEngine::regions);
-  options.delta_rel = 0.01;
-  const BakedBody ball(bake::make_model("golf_ball", 20'000), options);
-  const double radius_m = ball.view.header->radius_m;
-  const double delta_m = options.delta_rel * radius_m;
-  const Settings settings{
-      .engine = EngineKind::regions, .delta_m = delta_m, .cluster_radius_m = delta_m};
+  const Models balls("golf_ball", "golf_ball", 20'000, 0.01);
+  const double radius_m = balls.a.view.header->radius_m;
   int touching = 0, lost = 0;
   for (int i = 0; i < 100; ++i) {
     const Pose poses[2] = {{{1.99 * radius_m, 0, 0}, turn({0.4 * i, 0.7 * i, 0.1 * i})}, {}};
-    BakedScene exact({ball.view, ball.view}, {{0, 1}}, settings);
-    BakedScene budgeted({ball.view, ball.view}, {{0, 1}}, settings);
+    BakedScene exact = balls.scene();
+    BakedScene budgeted = balls.scene();
     if (tick_or_fail(*exact.engine, poses).contacts.empty()) continue;
     ++touching;
     lost += tick_or_fail(*budgeted.engine, poses, {.units = 200}).contacts.empty() ? 1 : 0;
@@ -212,15 +225,9 @@ TEST(RegionsBudget, however_little_there_is_after_a_jump_some_contact_is_known) 
 
 /// Jaws pass each other by more than delta a tick and meet in places that have not touched before.
 TEST(RegionsBudget, fast_passes_find_where_they_meet) {
-  bake::BakeOptions options = options_for(bake::ForEngine::regions);
-  options.delta_rel = 0.02;
-  const BakedBody upper(bake::make_model("jaw_upper", 24'000), options);
-  const BakedBody lower(bake::make_model("jaw_lower", 24'000), options);
-  const double delta_m = options.delta_rel * upper.view.header->radius_m;
-  const Settings settings{
-      .engine = EngineKind::regions, .delta_m = delta_m, .cluster_radius_m = delta_m};
-  BakedScene exact({upper.view, lower.view}, {{0, 1}}, settings);
-  BakedScene budgeted({upper.view, lower.view}, {{0, 1}}, settings);
+  const Models jaws("jaw_upper", "jaw_lower", 24'000, 0.02);
+  BakedScene exact = jaws.scene();
+  BakedScene budgeted = jaws.scene();
   constexpr double kFeltWell = 0.8;  // of delta; farther contacts push little
   int touching = 0, lost = 0;
   for (int i = 0; i < 400; ++i) {
@@ -228,7 +235,8 @@ TEST(RegionsBudget, fast_passes_find_where_they_meet) {
     poses[0].position_m.z += 1e-3;
     const TickResult truth = tick_or_fail(*exact.engine, poses);
     const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = 200});
-    if (truth.contacts.empty() || truth.min_distance_m > kFeltWell * delta_m) continue;
+    if (truth.contacts.empty() || truth.min_distance_m > kFeltWell * jaws.settings.delta_m)
+      continue;
     ++touching;
     lost += found.contacts.empty() ? 1 : 0;
   }
