@@ -154,39 +154,6 @@ TEST(RegionsBudget, few_near_regions_of_many_are_found_after_a_jump) {
   EXPECT_LT(most, kUnits);
 }
 
-/// A ball slides over another by half of delta a tick, with units for a few climbs and searches:
-/// where it touches is followed over the surface, from region to region.
-TEST(RegionsBudget, fast_bodies_do_not_lose_touch) {
-  bake::BakeOptions options = options_for(bake::ForEngine::regions);
-  options.delta_rel = 0.02;
-  const BakedBody ball(bake::make_model("golf_ball", 20'000), options);
-  const double radius_m = ball.view.header->radius_m;
-  const double delta_m = options.delta_rel * radius_m;
-  const Settings settings{
-      .engine = EngineKind::regions, .delta_m = delta_m, .cluster_radius_m = delta_m};
-  BakedScene exact({ball.view, ball.view}, {{0, 1}}, settings);
-  BakedScene budgeted({ball.view, ball.view}, {{0, 1}}, settings);
-  int touching = 0, lost = 0;
-  double squares = 0, peak = 0;
-  for (int i = 0; i < 300; ++i) {
-    const double angle = 0.25 * options.delta_rel * i;
-    const double apart_m = 1.985 * radius_m;
-    const Pose poses[2] = {{{apart_m * std::cos(angle), apart_m * std::sin(angle), 0}, {}}, {}};
-    const TickResult truth = tick_or_fail(*exact.engine, poses);
-    const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = 70});
-    if (i < 20 || truth.contacts.empty()) continue;
-    ++touching;
-    lost += found.contacts.empty() ? 1 : 0;
-    squares += squared_norm(found.wrench.force_N - truth.wrench.force_N);
-    peak = std::max(peak, norm(truth.wrench.force_N));
-  }
-  const double error = std::sqrt(squares / touching) / peak;
-  RecordProperty("error", std::to_string(error));
-  EXPECT_GT(touching, 250);
-  EXPECT_EQ(lost, 0);
-  EXPECT_LT(error, 0.35);
-}
-
 /// Two models and the settings of their scene, delta relative to the first one's radius.
 struct Models {
   Models(const char* of_a, const char* of_b, std::size_t triangles, double delta_rel)
@@ -204,6 +171,35 @@ struct Models {
   BakedBody a, b;
   Settings settings{.engine = EngineKind::regions};
 };
+
+/// A ball slides over another by half of delta a tick, with units for a few climbs and searches:
+/// where it touches is followed over the surface, from region to region.
+TEST(RegionsBudget, fast_bodies_do_not_lose_touch) {
+  constexpr double kDeltaRel = 0.02;
+  const Models balls("golf_ball", "golf_ball", 20'000, kDeltaRel);
+  const double radius_m = balls.a.view.header->radius_m;
+  BakedScene exact = balls.scene();
+  BakedScene budgeted = balls.scene();
+  int touching = 0, lost = 0;
+  double squares = 0, peak = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double angle = 0.25 * kDeltaRel * i;
+    const double apart_m = 1.985 * radius_m;
+    const Pose poses[2] = {{{apart_m * std::cos(angle), apart_m * std::sin(angle), 0}, {}}, {}};
+    const TickResult truth = tick_or_fail(*exact.engine, poses);
+    const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = 70});
+    if (i < 20 || truth.contacts.empty()) continue;
+    ++touching;
+    lost += found.contacts.empty() ? 1 : 0;
+    squares += squared_norm(found.wrench.force_N - truth.wrench.force_N);
+    peak = std::max(peak, norm(truth.wrench.force_N));
+  }
+  const double error = std::sqrt(squares / touching) / peak;
+  RecordProperty("error", std::to_string(error));
+  EXPECT_GT(touching, 250);
+  EXPECT_EQ(lost, 0);
+  EXPECT_LT(error, 0.35);
+}
 
 /// Where the ball touches is not known, and what a tick has does not do for ruling out the rest.
 TEST(RegionsBudget, however_little_there_is_after_a_jump_some_contact_is_known) {
