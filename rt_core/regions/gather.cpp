@@ -22,9 +22,6 @@ constexpr double kMostSwept = 0.04;
 constexpr double kLeastSwept = 128;
 constexpr double kSweptPerRegion = 0.25;
 
-/// Of a tick, for some contact. What then proves where there are others takes as much.
-constexpr double kMostScouted = 0.5;
-
 void limit_sweep(Work& work, std::size_t regions) noexcept {
   const double units = work.units_of_tick();
   if (units == std::numeric_limits<double>::infinity()) return;
@@ -48,7 +45,7 @@ bool sweep_if_lost(Work& work, std::uint32_t index) noexcept {
   memory.containment[index].doubtful = true;
   memory.pursuit.surveyed = 1;  // what a survey had left of another place is none of this one
   // However small the budget is for the rest of the tick, it knows where the bodies touch.
-  if (work.demand.limited) scout(work, index, kMostScouted);
+  if (work.demand.limited) scout(work, index);
   const std::span<float> swept = memory.swept.first(pair.image_a->regions.size());
   limit_sweep(work, swept.size());
   sweep(*memory.kernels, memory.frames[index], *memory.search, work.pace,

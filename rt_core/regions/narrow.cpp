@@ -48,9 +48,6 @@ constexpr double kFollowWorth = 2;
 /// In a tick, all regions together, in contact tolerances: less is what witnesses waver by.
 constexpr double kLeastGain = 0.006;
 
-/// For some contact of bodies that have lost all, of what the tick has left: a half leaves too
-/// little to prove, a quarter finds none in the smallest budgets.
-constexpr double kMostScouted = 1.0 / 3;
 /// A search goes on from the tick before for this share of what is left, the rest being for what is
 /// new: and where what is left of it can make the interval narrower by this share at least, after
 /// all motion since.
@@ -103,7 +100,7 @@ class Narrowing {
     }
     for (std::uint32_t i = 0; i < work_.memory.pairs.size() && work_.pace.go_on(); ++i) {
       if (margin_of(work_.memory.pairs[i]) > 0) continue;
-      const std::uint32_t state = scout(work_, i, kMostScouted);
+      const std::uint32_t state = scout(work_, i);
       const std::uint32_t index = state != image::kNone ? work_.active_of(state) : image::kNone;
       if (index == image::kNone) continue;
       work_.active()[index].climbed = false;

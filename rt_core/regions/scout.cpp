@@ -18,8 +18,7 @@ constexpr float kNearerBelow = 0.7f;
 constexpr std::uint32_t kMostWaiting = 128;
 
 static_assert(kMostLooks == kBatch);
-/// Sixteen looks and their batch, which are never begun with less: half of a tick or less does for
-/// what is begun at its end, too.
+/// Sixteen looks and their batch, which are never begun with less.
 constexpr std::uint64_t kFewestUnits = kMostLooks / kLooksPerUnit + kBatchUnits;
 /// Nearly all contacts are found with half of these. Where there is none there are many places that
 /// are not quite near enough.
@@ -127,12 +126,12 @@ class Scout {
 
 }  // namespace
 
-std::uint32_t scout(Work& work, std::uint32_t pair, double share) noexcept {
+std::uint32_t scout(Work& work, std::uint32_t pair) noexcept {
   const QueryMemory& memory = work.memory;
   const PairFrame& frame = memory.frames[pair];
   if (!can_look(frame) || !work.pace.go_on()) return image::kNone;
-  const double most = share * work.units_left();
-  const double units = most < kMostUnits ? most : kMostUnits;
+  const double left = work.units_left();
+  const double units = left < kMostUnits ? left : kMostUnits;
   if (units < static_cast<double>(kFewestUnits)) return image::kNone;
   work.pace.limit(static_cast<std::uint64_t>(units));
   const Witness found = Scout(work, pair).run();

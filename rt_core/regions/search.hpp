@@ -71,6 +71,10 @@ class Pace {
     next_reading_ = meter_.used() + units;
     time_ended_ = false;
   }
+  /// Units to be had before the clock is read again; 0 once time has ended.
+  [[nodiscard]] std::uint64_t granted() const noexcept {
+    return !time_ended_ && next_reading_ > meter_.used() ? next_reading_ - meter_.used() : 0;
+  }
   /// go_on() is false after so many units from now on, too, until this is asked again.
   void limit(std::uint64_t units) noexcept { limit_ = meter_.used() + units; }
   void no_limit() noexcept { limit_ = std::numeric_limits<std::uint64_t>::max(); }

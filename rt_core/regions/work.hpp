@@ -72,8 +72,14 @@ struct Work {
   }
   /// Work units that the whole tick does for, about; infinity where nothing limits it.
   [[nodiscard]] double units_of_tick() const noexcept { return meter.queries_in_all(unit_ns()); }
-  /// The same of what is left.
-  [[nodiscard]] double units_left() const noexcept { return meter.queries_affordable(unit_ns()); }
+  /// The same of what is left, with what is granted however late it is.
+  [[nodiscard]] double units_left() const noexcept {
+    const double in_time = meter.queries_affordable(unit_ns());
+    const auto granted = static_cast<double>(pace.granted());
+    const double units = meter.queries_affordable(0);
+    const double most = in_time > granted ? in_time : granted;
+    return most < units ? most : units;
+  }
 
   /// What is kept is measured in the ticks to come, and what is not ends a search sooner: of a
   /// region no more than a tick of so many units does for.

@@ -172,6 +172,17 @@ struct Models {
   Settings settings{.engine = EngineKind::regions};
 };
 
+struct CountingClock {
+  std::uint64_t now = 0;
+  static std::uint64_t read(void* self) { return ++static_cast<CountingClock*>(self)->now; }
+};
+
+/// @param angle  that it has gone round
+Pose touching_ball(double radius_m, double angle) {
+  const double apart_m = 1.985 * radius_m;
+  return {{apart_m * std::cos(angle), apart_m * std::sin(angle), 0}, {}};
+}
+
 /// A ball slides over another by half of delta a tick, with units for a few climbs and searches:
 /// where it touches is followed over the surface, from region to region.
 TEST(RegionsBudget, fast_bodies_do_not_lose_touch) {
@@ -183,9 +194,7 @@ TEST(RegionsBudget, fast_bodies_do_not_lose_touch) {
   int touching = 0, lost = 0;
   double squares = 0, peak = 0;
   for (int i = 0; i < 300; ++i) {
-    const double angle = 0.25 * kDeltaRel * i;
-    const double apart_m = 1.985 * radius_m;
-    const Pose poses[2] = {{{apart_m * std::cos(angle), apart_m * std::sin(angle), 0}, {}}, {}};
+    const Pose poses[2] = {touching_ball(radius_m, 0.25 * kDeltaRel * i), {}};
     const TickResult truth = tick_or_fail(*exact.engine, poses);
     const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = 70});
     if (i < 20 || truth.contacts.empty()) continue;
@@ -201,6 +210,32 @@ TEST(RegionsBudget, fast_bodies_do_not_lose_touch) {
   EXPECT_LT(error, 0.35);
 }
 
+/// What is done however late a tick is goes to where the ball touches.
+TEST(RegionsBudget, fast_bodies_do_not_lose_touch_in_ticks_that_are_late_when_they_begin) {
+  constexpr double kDeltaRel = 0.01;
+  const Models balls("golf_ball", "golf_ball", 20'000, kDeltaRel);
+  const double radius_m = balls.a.view.header->radius_m;
+  BakedScene exact = balls.scene();
+  BakedScene late = balls.scene();
+  CountingClock clock;
+  int touching = 0, lost = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Pose poses[2] = {touching_ball(radius_m, 0.25 * kDeltaRel * i), {}};
+    const TickResult truth = tick_or_fail(*exact.engine, poses);
+    Budget budget;
+    if (i > 0) {
+      budget = {.clock_ns = CountingClock::read, .clock_context = &clock, .deadline_ns = 0};
+    }
+    const TickResult found = tick_or_fail(*late.engine, poses, budget);
+    if (truth.contacts.empty()) continue;
+    ++touching;
+    lost += found.contacts.empty() ? 1 : 0;
+  }
+  RecordProperty("lost", lost);
+  EXPECT_GT(touching, 250);
+  EXPECT_EQ(lost, 0);
+}
+
 /// Where the ball touches is not known, and what a tick has does not do for ruling out the rest.
 TEST(RegionsBudget, however_little_there_is_after_a_jump_some_contact_is_known) {
   const Models balls("golf_ball", "golf_ball", 20'000, 0.01);
@@ -212,7 +247,7 @@ TEST(RegionsBudget, however_little_there_is_after_a_jump_some_contact_is_known) 
     BakedScene budgeted = balls.scene();
     if (tick_or_fail(*exact.engine, poses).contacts.empty()) continue;
     ++touching;
-    lost += tick_or_fail(*budgeted.engine, poses, {.units = 200}).contacts.empty() ? 1 : 0;
+    lost += tick_or_fail(*budgeted.engine, poses, {.units = 100}).contacts.empty() ? 1 : 0;
   }
   RecordProperty("lost", lost);
   EXPECT_GT(touching, 90);
@@ -230,7 +265,7 @@ TEST(RegionsBudget, fast_passes_find_where_they_meet) {
     Pose poses[2] = {ground(0.1, 10 * i), {}};
     poses[0].position_m.z += 1e-3;
     const TickResult truth = tick_or_fail(*exact.engine, poses);
-    const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = 200});
+    const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = 100});
     if (truth.contacts.empty() || truth.min_distance_m > kFeltWell * jaws.settings.delta_m)
       continue;
     ++touching;
@@ -378,11 +413,6 @@ TEST(RegionsBudget, cold_budget_is_no_worse_than_what_an_exact_cold_tick_has_rea
     }
   }
 }
-
-struct CountingClock {
-  std::uint64_t now = 0;
-  static std::uint64_t read(void* self) { return ++static_cast<CountingClock*>(self)->now; }
-};
 
 TEST(RegionsBudget, deadline_ends_refinement) {
   BakedScene scene = scene_with(kSettings);
