@@ -16,7 +16,7 @@ using levels::PairState;
 constexpr double kJump = 0.05;
 constexpr double kJumpDelta = 2;
 /// Under a budget a sweep may take whichever is most: this share of a tick, so many units, or so
-/// many for each region, the last no more than half of the tick. It tells what is far, many regions
+/// many for each region; and no more than half of what is left. It tells what is far, many regions
 /// at a time; of surfaces that are near all over, little, and that costs most.
 constexpr double kMostSwept = 0.04;
 constexpr double kLeastSwept = 128;
@@ -25,10 +25,11 @@ constexpr double kSweptPerRegion = 0.25;
 void limit_sweep(Work& work, std::size_t regions) noexcept {
   const double units = work.units_of_tick();
   if (units == std::numeric_limits<double>::infinity()) return;
-  const double for_all = kSweptPerRegion * static_cast<double>(regions);
-  double most = for_all < 0.5 * units ? for_all : 0.5 * units;
+  double most = kSweptPerRegion * static_cast<double>(regions);
   most = most > kLeastSwept ? most : kLeastSwept;
   most = most > kMostSwept * units ? most : kMostSwept * units;
+  const double half = 0.5 * work.units_left();
+  most = most < half ? most : half;
   work.pace.limit(static_cast<std::uint64_t>(most));
 }
 
