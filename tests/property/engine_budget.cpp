@@ -8,6 +8,7 @@
 
 #include "tests/support/answers.hpp"
 #include "tests/support/brute_force.hpp"
+#include "tests/support/counting_clock.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace palpate::test {
@@ -119,11 +120,6 @@ TEST(EngineBudget, few_contacts_are_a_reported_graceful_stop) {
   }
   EXPECT_TRUE(met);
 }
-
-struct CountingClock {
-  std::uint64_t now = 0;
-  static std::uint64_t read(void* self) { return ++static_cast<CountingClock*>(self)->now; }
-};
 
 TEST(EngineBudget, deadline_ends_refinement) {
   BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, kSettings);

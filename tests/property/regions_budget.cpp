@@ -11,6 +11,7 @@
 #include "rt_core/regions/search.hpp"
 #include "tests/support/allocation_trap.hpp"
 #include "tests/support/brute_force.hpp"
+#include "tests/support/counting_clock.hpp"
 #include "tests/support/ground.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -170,11 +171,6 @@ struct Models {
 
   BakedBody a, b;
   Settings settings{.engine = EngineKind::regions};
-};
-
-struct CountingClock {
-  std::uint64_t now = 0;
-  static std::uint64_t read(void* self) { return ++static_cast<CountingClock*>(self)->now; }
 };
 
 /// @param angle  that it has gone round
