@@ -16,6 +16,7 @@ endif()
 
 set(PALPATE_SANITIZE "" CACHE STRING "Sanitizers for every target, as -fsanitize takes them (address,undefined or thread)")
 option(PALPATE_COVERAGE "Instrument for gcov" OFF)
+option(PALPATE_UNITY "Compile what belongs together as one: headers are read once" OFF)
 
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12's superword vectoriser turns the round trip double -> float -> double of two neighbours into nothing: what is
@@ -28,8 +29,11 @@ endif()
 
 add_library(palpate_flags INTERFACE)
 target_compile_options(palpate_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wold-style-cast -Wcast-align
+  -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wdouble-promotion -Wold-style-cast -Wcast-align
   -Wundef -Wformat=2 -Wvla -Wmissing-declarations $<$<NOT:$<CONFIG:Release>>:-Werror>)
+if(NOT PALPATE_UNITY)  # which of a file's names hide which is told file by file
+  target_compile_options(palpate_flags INTERFACE -Wshadow)
+endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 sees these in std::string and in CGAL's inlined code, where there is none.
   target_compile_options(palpate_flags INTERFACE -Wno-maybe-uninitialized -Wno-restrict $<$<CONFIG:Release>:-Wno-stringop-overflow;-Wno-array-bounds>)
@@ -37,6 +41,7 @@ endif()
 if(PALPATE_SANITIZE)
   target_compile_options(palpate_flags INTERFACE -fsanitize=${PALPATE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(palpate_flags INTERFACE -fsanitize=${PALPATE_SANITIZE})
+  target_compile_definitions(palpate_flags INTERFACE PALPATE_SANITIZED)
   if(PALPATE_SANITIZE STREQUAL "thread")
     # GCC and Clang have no common name for it.
     target_compile_definitions(palpate_flags INTERFACE PALPATE_THREAD_SANITIZER)
@@ -64,6 +69,21 @@ function(palpate_shim folder out)
     file(CREATE_LINK "${PROJECT_SOURCE_DIR}/${folder}" "${shim}/${folder}" SYMBOLIC)
   endif()
   set(${out} "${shim}" PARENT_SCOPE)
+endfunction()
+
+# palpate_unity(TARGET): where PALPATE_UNITY is on, the sources of each folder are compiled as one. So what a file keeps to itself
+# has a name of its own within its folder.
+function(palpate_unity target)
+  if(NOT PALPATE_UNITY)
+    return()
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    cmake_path(GET source PARENT_PATH folder)
+    cmake_path(GET folder FILENAME group)
+    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${group}")
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
 # palpate_module(TARGET FOLDER SOURCES...): a static library whose public include path holds nothing but `FOLDER/`, so that a

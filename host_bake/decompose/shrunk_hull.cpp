@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kSmallHull = 24;  // facets up to which trying all of them beats walking
 constexpr int kCuts = 8;  // that mostly leave nothing of a triangle that does not enter
-constexpr float kFar = std::numeric_limits<float>::infinity();
+constexpr float kNowhere = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void ShrunkHull::find_planes(const GrowingHull& hull) {
   corners_.clear();
   neighbours_.clear();
   plane_of_slot_.assign(slots.size(), 0);
-  box_ = {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  box_ = {{kNowhere, kNowhere, kNowhere}, {-kNowhere, -kNowhere, -kNowhere}};
   for (std::size_t s = 0; s < slots.size(); ++s) {
     if (!slots[s].alive) continue;
     plane_of_slot_[s] = static_cast<std::uint32_t>(planes_.size());

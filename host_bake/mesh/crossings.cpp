@@ -15,7 +15,7 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point3 = Kernel::Point_3;
-using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::uint32_t>;
+using BoxedFace = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::uint32_t>;
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Leaves the search from inside its callback.
@@ -96,7 +96,7 @@ std::optional<std::vector<Pair>> crossing_pairs(const Mesh& mesh) {
     const Face& f = mesh.faces[face];
     return std::array<Point, 3>{mesh.points[f[0]], mesh.points[f[1]], mesh.points[f[2]]};
   };
-  std::vector<Box> boxes;
+  std::vector<BoxedFace> boxes;
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
     const auto [a, b, c] = corners(f);
     if (collinear(a, b, c)) continue;
@@ -108,7 +108,7 @@ std::optional<std::vector<Pair>> crossing_pairs(const Mesh& mesh) {
   tbb::concurrent_vector<Pair> found;
   try {
     CGAL::box_self_intersection_d<Concurrency>(
-        boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
+        boxes.begin(), boxes.end(), [&](const BoxedFace& a, const BoxedFace& b) {
           if (meetings.fetch_add(1, std::memory_order_relaxed) >= limit) throw TooManyMeetings{};
           if (!triangles_cross(corners(a.info()), corners(b.info()))) return;
           found.push_back(std::minmax(a.info(), b.info()));

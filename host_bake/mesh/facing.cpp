@@ -27,7 +27,7 @@ constexpr double kNearlyClosed = 0.1;  ///< vector area over area
 constexpr double kLeastClosedFullness = 1e-9;
 constexpr double kLeastOpenFullness = 0.01;
 
-Point3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
+Point3 cgal_point(const Point& p) { return {p[0], p[1], p[2]}; }
 
 /// Sums over one component.
 struct Shape {
@@ -45,7 +45,7 @@ struct Shape {
 std::vector<Shape> shapes_of(const Mesh& mesh, const Components& components) {
   std::vector<Shape> shapes(components.closed.size());
   CGAL::Bbox_3 box;
-  for (const Point& p : mesh.points) box += to_cgal(p).bbox();
+  for (const Point& p : mesh.points) box += cgal_point(p).bbox();
   const double extent = std::max({box.x_span(), box.y_span(), box.z_span()});
   const auto local = [&box, extent](const Point& p) {
     return Vector((p[0] - box.xmin()) / extent, (p[1] - box.ymin()) / extent,
@@ -102,8 +102,9 @@ class Nesting {
       const std::uint32_t component = components.of_face[f];
       if (component == kNoComponent || !components.closed[component]) continue;
       const Face& v = mesh.faces[f];
-      const Kernel::Triangle_3 triangle(to_cgal(mesh.points[v[0]]), to_cgal(mesh.points[v[1]]),
-                                        to_cgal(mesh.points[v[2]]));
+      const Kernel::Triangle_3 triangle(cgal_point(mesh.points[v[0]]),
+                                        cgal_point(mesh.points[v[1]]),
+                                        cgal_point(mesh.points[v[2]]));
       if (!seen[component]) first[component] = triangle.vertex(0);
       seen[component] = 1;
       // A face seen edge-on by a vertical ray is never crossed, so those without area may stay out.

@@ -16,7 +16,7 @@
 namespace palpate::bake {
 namespace {
 
-struct Box {
+struct Extent {
   Point low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
             std::numeric_limits<double>::infinity()};
   Point high{-low[0], -low[0], -low[0]};
@@ -28,8 +28,8 @@ std::string text(const Point& p) {
   return out.str();
 }
 
-Box box_of(const Mesh& mesh) {
-  Box box;
+Extent box_of(const Mesh& mesh) {
+  Extent box;
   for (const Face& face : mesh.faces)
     for (const std::uint32_t v : face)
       for (std::size_t i = 0; i < 3; ++i) {
@@ -72,7 +72,7 @@ double radius_about(const Point& centre, const std::vector<Point>& points) {
 NormalMesh normalise(const Mesh& mesh) {
   if (mesh.faces.empty())
     throw InputRefused("mesh is empty", "no faces", "give a mesh with triangles");
-  const Box box = box_of(mesh);
+  const Extent box = box_of(mesh);
   const Point middle = {box.low[0] / 2 + box.high[0] / 2, box.low[1] / 2 + box.high[1] / 2,
                         box.low[2] / 2 + box.high[2] / 2};
   const double size =

@@ -8,13 +8,13 @@
 namespace palpate::bake {
 namespace {
 
-struct Header {
+struct OffHeader {
   bool textures = false, colours = false, normals = false;  ///< extra numbers a vertex (ST, C, N)
   bool supported = true;                                    ///< not 4OFF or nOFF: points beyond 3D
 };
 
 /// False where the word is no OFF keyword.
-bool parse_keyword(std::string_view word, Header& out) {
+bool parse_keyword(std::string_view word, OffHeader& out) {
   const auto take = [&word](std::string_view prefix) {
     const bool found = word.starts_with(prefix);
     if (found) word.remove_prefix(prefix.size());
@@ -74,7 +74,7 @@ std::size_t read_count(Bytes& bytes, std::size_t each) {
   return count;
 }
 
-Soup read_binary(Bytes bytes, const Header& header) {
+Soup read_binary(Bytes bytes, const OffHeader& header) {
   Soup soup;
   const std::size_t extra =
       sizeof(float) * ((header.normals ? 3U : 0U) + (header.textures ? 2U : 0U));
@@ -102,13 +102,13 @@ Soup read_binary(Bytes bytes, const Header& header) {
 }  // namespace
 
 bool is_off_keyword(std::string_view word) {
-  Header header;
+  OffHeader header;
   return parse_keyword(word, header);
 }
 
 Soup read_off(std::string_view bytes, const std::string& file) {
   Text text(bytes, file, {.comments = true});
-  Header header;
+  OffHeader header;
   std::string_view word = text.word();
   // The keyword may be left out; then the file begins with the counts.
   if (parse_keyword(word, header)) {

@@ -29,7 +29,7 @@ struct Element {
   std::vector<Property> properties;
 };
 
-struct Header {
+struct PlyHeader {
   Encoding encoding = Encoding::ascii;
   std::vector<Element> elements;
 };
@@ -122,8 +122,8 @@ Property read_property(Text& text, Element::Kind kind) {
 }
 
 /// From behind the word `ply` to the first byte of the data.
-Header read_header(Text& text) {
-  Header header;
+PlyHeader read_header(Text& text) {
+  PlyHeader header;
   for (;;) {
     text.skip_line();
     const std::string_view keyword = text.word_on_line();
@@ -269,7 +269,7 @@ bool has(const Element& element, Use use) {
   return false;
 }
 
-void require_usable(const Header& header, const Text& text) {
+void require_usable(const PlyHeader& header, const Text& text) {
   for (const Element& element : header.elements) {
     const bool vertex = element.kind == Element::Kind::vertex;
     if (vertex && !(has(element, Use::x) && has(element, Use::y) && has(element, Use::z))) {
@@ -286,7 +286,7 @@ void require_usable(const Header& header, const Text& text) {
 Soup read_ply(std::string_view bytes, const std::string& file) {
   Text text(bytes, file, {});
   if (text.word() != "ply") text.refuse("not a PLY file", "check the file's name and content");
-  const Header header = read_header(text);
+  const PlyHeader header = read_header(text);
   require_usable(header, text);
   Soup soup;
   Stream in(text, file, header.encoding);

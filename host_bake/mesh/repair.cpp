@@ -12,7 +12,7 @@
 namespace palpate::bake {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoIndex = std::numeric_limits<std::uint32_t>::max();
 
 void say(RepairReport& report, std::size_t count, const char* what) {
   if (count > 0) report.done.push_back(std::to_string(count) + " " + what);
@@ -49,7 +49,7 @@ std::size_t remove_duplicates(std::vector<Face>& faces) {
 
 /// A face across an edge of exactly two faces.
 struct Neighbour {
-  std::uint32_t face = kNone;
+  std::uint32_t face = kNoIndex;
   bool agrees = true;  ///< runs along the edge the other way, as it should
 };
 
@@ -81,7 +81,7 @@ std::size_t orient(std::vector<Face>& faces) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < patch.size(); ++i) {
       for (const Neighbour& next : neighbours[patch[i]]) {
-        if (next.face == kNone || reached[next.face]) continue;
+        if (next.face == kNoIndex || reached[next.face]) continue;
         reached[next.face] = true;
         turned[next.face] = turned[patch[i]] == next.agrees;
         count += turned[next.face] ? 1U : 0U;
@@ -109,11 +109,11 @@ std::size_t separate_fans(Mesh& mesh) {
   });
   const std::size_t before = mesh.points.size();
   std::vector<char> taken(before, 0);
-  std::vector<std::uint32_t> vertex_of_fan(3 * mesh.faces.size(), kNone);
+  std::vector<std::uint32_t> vertex_of_fan(3 * mesh.faces.size(), kNoIndex);
   for (std::uint32_t corner = 0; corner < 3 * mesh.faces.size(); ++corner) {
     std::uint32_t& vertex = mesh.faces[corner / 3][corner % 3];
     std::uint32_t& own = vertex_of_fan[corners.find(corner)];
-    if (own == kNone) {
+    if (own == kNoIndex) {
       own = vertex;
       if (taken[vertex]) {
         own = static_cast<std::uint32_t>(mesh.points.size());
@@ -138,13 +138,13 @@ std::size_t face_outward(Mesh& mesh) {
 }
 
 std::size_t remove_unreferenced(Mesh& mesh) {
-  std::vector<std::uint32_t> index(mesh.points.size(), kNone);
+  std::vector<std::uint32_t> index(mesh.points.size(), kNoIndex);
   for (const Face& face : mesh.faces) {
     for (const std::uint32_t vertex : face) index[vertex] = 0;
   }
   std::uint32_t kept = 0;
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    if (index[v] == kNone) continue;
+    if (index[v] == kNoIndex) continue;
     mesh.points[kept] = mesh.points[v];
     index[v] = kept++;
   }

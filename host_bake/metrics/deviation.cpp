@@ -246,7 +246,7 @@ class PatchSearch {
   double settled_ = 0;        // largest squared bound of cells that are good
 };
 
-float rounded_up(double squared) {
+float root_rounded_up(double squared) {
   const double wanted = std::sqrt(squared) * (1 + kAllRoundings) + kAllRoundings;
   const auto f = static_cast<float>(wanted);
   return static_cast<double>(f) < wanted ? std::nextafter(f, std::numeric_limits<float>::infinity())
@@ -270,7 +270,7 @@ std::vector<float> surface_deviations(const NearestSurface& original, const Norm
           {vec(level.points[face[0]]), vec(level.points[face[1]]), vec(level.points[face[2]])},
           {nearest[face[0]], nearest[face[1]], nearest[face[2]]});
     }
-    deviations[i] = rounded_up(search.run());
+    deviations[i] = root_rounded_up(search.run());
   });
   return deviations;
 }

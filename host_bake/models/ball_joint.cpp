@@ -15,12 +15,12 @@ constexpr double kBall_m = 0.016;
 constexpr double kNeckRadius_m = 0.55 * kBall_m;
 constexpr double kNeckEnd_m = 2.1 * kBall_m;  // from the ball's centre
 constexpr double kNeckBlend_m = 0.2 * kBall_m;
-constexpr double kGap = 0.0075;  // of the ball's radius
+constexpr double kJointGap = 0.0075;  // of the ball's radius
 constexpr double kCupOuter_m = 1.25 * kBall_m;
-constexpr double kRim = 100.0 / 180.0;    // polar angle of the cup's rim over half a turn
-constexpr double kBowlShare = 0.55;       // of the vertices, in head and cup
-constexpr double kTextureHeight = 0.006;  // of the radius
-constexpr double kTextureCycles = 5.0;    // bumps a radius, of the coarsest octave
+constexpr double kCupRim = 100.0 / 180.0;  // polar angle of the cup's rim over half a turn
+constexpr double kBowlShare = 0.55;        // of the vertices, in head and cup
+constexpr double kTextureHeight = 0.006;   // of the radius
+constexpr double kTextureCycles = 5.0;     // bumps a radius, of the coarsest octave
 constexpr int kTextureOctaves = 3;
 
 double texture(const Point& d, std::uint64_t seed) {
@@ -46,7 +46,7 @@ std::size_t bowl_vertices(std::size_t triangles) {
 /// From the pole to the rim.
 std::vector<Row> bowl_rows(std::size_t triangles) {
   std::vector<Row> rows{{0.0, 1, 0.0}};
-  append(rows, plan_rows(unit_sphere(), 0.0, kRim, bowl_vertices(triangles), Last::ring));
+  append(rows, plan_rows(unit_sphere(), 0.0, kCupRim, bowl_vertices(triangles), Last::ring));
   return rows;
 }
 
@@ -56,12 +56,12 @@ Mesh ball_joint_head(std::size_t triangles, std::uint64_t seed) {
   const Surface surface = star_surface([=](const Point& d) { return head_radius(d, seed); });
   std::vector<Row> rows = bowl_rows(triangles);
   const std::size_t rest = triangles / 2 + 1 - bowl_vertices(triangles);
-  append(rows, plan_rows(surface, kRim, 1.0, rest, Last::pole));
+  append(rows, plan_rows(surface, kCupRim, 1.0, rest, Last::pole));
   return loft(surface, rows, Ends::poles);
 }
 
 Mesh ball_joint_cup(std::size_t triangles, std::uint64_t seed) {
-  const Radius inner = [=](const Point& d) { return (1.0 + kGap) * head_radius(d, seed); };
+  const Radius inner = [=](const Point& d) { return (1.0 + kJointGap) * head_radius(d, seed); };
   const Radius outer = [=](const Point& d) { return kCupOuter_m * texture(d, ~seed); };
   return cup(inner, outer, bowl_rows(triangles), triangles / 2 + 2);
 }

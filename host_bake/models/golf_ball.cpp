@@ -18,9 +18,9 @@ constexpr double kDepth_m = 0.00025;
 constexpr double kDimpleRadius_m = 0.00185;
 constexpr std::size_t kDimples = 336;
 
-// The rounding of the rim, as a share of the depth; it takes (1 +- kRim) of the dimple's radius
-// squared.
-constexpr double kRim = 0.25;
+// The rounding of the rim, as a share of the depth; it takes (1 +- kDimpleRim) of the dimple's
+// radius squared.
+constexpr double kDimpleRim = 0.25;
 
 constexpr double kShellGap = 0.007;       // of the radius
 constexpr double kShellOuter = 1.2;       // radii
@@ -87,7 +87,7 @@ Radius dimpled(std::uint64_t seed) {
     double nearest = 4.0;
     for (const Point& c : centres) nearest = std::min(nearest, squared_distance(d, c));
     const double x2 = nearest / square(kDimpleRadius_m / kRadius_m);
-    return kRadius_m + kDepth_m * smooth_min(x2 - 1.0, 0.0, kRim);
+    return kRadius_m + kDepth_m * smooth_min(x2 - 1.0, 0.0, kDimpleRim);
   };
 }
 

@@ -15,7 +15,7 @@
 namespace palpate::bake {
 namespace {
 
-constexpr double kRoot_mm = 3.0;
+constexpr double kThreadRoot_mm = 3.0;
 constexpr double kDepth_mm = 1.0;
 constexpr double kPitch_mm = 2.0;
 constexpr double kTip_mm = -12.0;  // z of the screw's end; its head stands on z = 0
@@ -26,7 +26,7 @@ constexpr double kKnurls = 24.0;
 constexpr double kSocketRadius_mm = 2.6;
 constexpr double kSocketDepth_mm = 2.0;
 
-constexpr double kGap = 0.036;  // of the radius at each place of the thread
+constexpr double kThreadGap = 0.036;  // of the radius at each place of the thread
 constexpr double kNutBottom_mm = -9.5, kNutTop_mm = -3.5;
 constexpr double kNutFace_mm = 0.5;  // the faces lie beyond the threaded part by this
 constexpr double kCountersink_mm = 4.7;
@@ -54,7 +54,7 @@ double thread_mm(double turns, double z_mm) {
   const double height = smooth_min(smooth_max((ramp - 0.2) / 0.6, 0.0, 0.2), 1.0, 0.2);
   const double whole =
       smooth_step(kTip_mm - 0.2, kTip_mm + 1.8, z_mm) * (1.0 - smooth_step(-2.2, -0.2, z_mm));
-  return kRoot_mm + kDepth_mm * whole * height;
+  return kThreadRoot_mm + kDepth_mm * whole * height;
 }
 
 /// v in [0, 1] end face, [1, 2] shank, [2, 3] below the head, [3, 4] around it, [4, 5] top.
@@ -90,20 +90,20 @@ constexpr double kNutPieces = 6.8;
 Place nut_place(double turns, double v) {
   if (v <= kMatedEnd) {
     const Place screw = screw_place(turns, v);
-    return {(1.0 + kGap) * screw.radius_mm, screw.z_mm};
+    return {(1.0 + kThreadGap) * screw.radius_mm, screw.z_mm};
   }
   const double hexagon = hexagon_mm(kFlat_mm, turns);
   const double top = kNutTop_mm + kNutFace_mm;
   const double bottom = kNutBottom_mm - kNutFace_mm;
   const std::array<Place, 8> outline{
-      {{(1.0 + kGap) * thread_mm(turns, kNutTop_mm), kNutTop_mm},
+      {{(1.0 + kThreadGap) * thread_mm(turns, kNutTop_mm), kNutTop_mm},
        {kCountersink_mm, top},
        {hexagon - kEdge_mm, top},
        {hexagon, top - kEdge_mm},
        {hexagon, bottom + kEdge_mm},
        {hexagon - kEdge_mm, bottom},
        {kCountersink_mm, bottom},
-       {(1.0 + kGap) * thread_mm(turns, kNutBottom_mm), kNutBottom_mm}}};
+       {(1.0 + kThreadGap) * thread_mm(turns, kNutBottom_mm), kNutBottom_mm}}};
   const double piece = std::min(v - kMatedEnd, kNutPieces);
   const auto i = static_cast<std::size_t>(piece);
   const double share = piece - static_cast<double>(i);

@@ -16,9 +16,9 @@ constexpr std::uint32_t kGroup = image::kRegionWidth;
 constexpr int kNormalRounds = 4;  // of the division of normals into two
 // Eight steps of 22.5 degrees make half a turn. Constants, for libm differs between hosts.
 constexpr int kDirections = 8;
-constexpr double kCosine = 0.92387953251128674;
-constexpr double kSine = 0.38268343236508977;
-constexpr std::size_t kSample = 512;  // faces that a direction is chosen by
+constexpr double kTurnCosine = 0.92387953251128674;
+constexpr double kTurnSine = 0.38268343236508977;
+constexpr std::size_t kFaceSample = 512;  // faces that a direction is chosen by
 
 void widen(Vec3d& low, Vec3d& high, Vec3d p) {
   low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
@@ -143,7 +143,7 @@ class Divider {
   /// and the others have the shortest diagonals.
   Vec3d across_round_parts(std::span<const std::uint32_t> faces, std::uint32_t left) const {
     std::vector<std::uint32_t> sample;
-    const std::size_t step = (faces.size() + kSample - 1) / kSample;
+    const std::size_t step = (faces.size() + kFaceSample - 1) / kFaceSample;
     for (std::size_t i = 0; i < faces.size(); i += step) sample.push_back(faces[i]);
     const auto share = static_cast<std::uint32_t>(left * sample.size() / faces.size());
     const Mat3d along = principal(sample);
@@ -159,8 +159,8 @@ class Divider {
         least = size;
         best = u;
       }
-      const Vec3d turned = kCosine * u + kSine * v;
-      v = kCosine * v - kSine * u;
+      const Vec3d turned = kTurnCosine * u + kTurnSine * v;
+      v = kTurnCosine * v - kTurnSine * u;
       u = turned;
     }
     return best;

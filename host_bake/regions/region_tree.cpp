@@ -26,7 +26,7 @@ void refuse_above(std::size_t value, std::size_t limit, const std::string& what)
                      "divide or simplify the mesh, or bake for the levels engine");
 }
 
-float above(double v) {
+float next_float_above(double v) {
   return std::nextafter(static_cast<float>(v), std::numeric_limits<float>::infinity());
 }
 
@@ -211,12 +211,12 @@ class Builder {
       const image::RegionNode& node = out_.nodes[r.parent];
       const Vec3d half{double(node.half[0][r.slot]), double(node.half[1][r.slot]),
                        double(node.half[2][r.slot])};
-      r.radius = above(norm(half));
+      r.radius = next_float_above(norm(half));
     }
     for (std::size_t i = 0; i < order_.size(); ++i) {
       image::Region& r = out_.regions[region_of_[i]];
       for (std::size_t c = 0; c < 3; ++c)
-        r.reach = std::max(r.reach, above(norm(point(order_[i], c))));
+        r.reach = std::max(r.reach, next_float_above(norm(point(order_[i], c))));
     }
   }
 

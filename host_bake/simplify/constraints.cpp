@@ -13,7 +13,7 @@ namespace palpate::bake {
 namespace {
 
 // Of a patch that is not much larger than a ring.
-constexpr std::size_t kFewPoints = 24;
+constexpr std::size_t kSmallPatch = 24;
 
 int side(const Corners& plane, const PointF& p) {
   if (p == plane[0] || p == plane[1] || p == plane[2]) return 0;
@@ -135,7 +135,7 @@ FaceBox Constraints::place_of_hulls() const {
   for (const std::uint32_t v : ring_->vertices) place.add(surface_.points[v]);
   for (std::size_t i = 0; i < affected_count_; ++i) {
     const Affected& a = affected_[i];
-    if (a.closed || a.shape.points.size() > kFewPoints) continue;
+    if (a.closed || a.shape.points.size() > kSmallPatch) continue;
     for (const PointF& p : a.shape.points) place.add(p);
   }
   return place;

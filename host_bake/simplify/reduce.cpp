@@ -25,8 +25,8 @@ namespace {
 
 namespace sms = CGAL::Surface_mesh_simplification;
 using Kernel = CGAL::Simple_cartesian<double>;
-using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
-using Quadrics = sms::GarlandHeckbert_plane_policies<Surface, Kernel>;
+using CgalSurface = CGAL::Surface_mesh<Kernel::Point_3>;
+using Quadrics = sms::GarlandHeckbert_plane_policies<CgalSurface, Kernel>;
 
 /// A quadric's error is a sum of squared distances from planes. Up to this share of the square of
 /// the deviation allowed, on detailed models between none and a twentieth of the faces go beyond
@@ -47,22 +47,22 @@ struct TooExpensive {
   }
 };
 
-Surface surface_of(const NormalMesh& mesh) {
-  Surface surface;
-  std::vector<Surface::Vertex_index> at;
+CgalSurface surface_of(const NormalMesh& mesh) {
+  CgalSurface surface;
+  std::vector<CgalSurface::Vertex_index> at;
   at.reserve(mesh.points.size());
   for (const auto& point : mesh.points) {
     const Vec3d p = vec(point);
     at.push_back(surface.add_vertex({p.x, p.y, p.z}));
   }
   for (const Face& f : mesh.faces) {
-    if (surface.add_face(at[f[0]], at[f[1]], at[f[2]]) == Surface::null_face())
+    if (surface.add_face(at[f[0]], at[f[1]], at[f[2]]) == CgalSurface::null_face())
       throw std::logic_error("a mesh that was let pass is no manifold");
   }
   return surface;
 }
 
-NormalMesh mesh_of(const Surface& surface, const NormalMesh& original) {
+NormalMesh mesh_of(const CgalSurface& surface, const NormalMesh& original) {
   NormalMesh mesh;
   mesh.centre_m = original.centre_m;
   mesh.radius_m = original.radius_m;
@@ -100,7 +100,7 @@ class Guard {
 };
 
 NormalMesh collapsed(const NormalMesh& mesh, double most_error, const Kept& kept) {
-  Surface surface = surface_of(mesh);
+  CgalSurface surface = surface_of(mesh);
   const Quadrics quadrics(surface);
   sms::edge_collapse(surface, TooExpensive{most_error},
                      CGAL::parameters::get_cost(quadrics.get_cost())

@@ -63,7 +63,7 @@ std::string reflex_edge(const std::vector<PointF>& points,
   return {};
 }
 
-using Corners = std::uint32_t[3];
+using CornerNumbers = std::uint32_t[3];
 
 // Finds vertices of a piece above planes through three of its vertices.
 class Above {
@@ -77,7 +77,7 @@ class Above {
       joined_ = adjacency(evidence.hulls[index].faces, hull_vertices_);
   }
 
-  [[nodiscard]] bool any(const Corners& v) const {
+  [[nodiscard]] bool any(const CornerNumbers& v) const {
     const auto suspects = suspects_of(v);
     return std::any_of(suspects.begin(), suspects.end(), [&](std::uint32_t s) {
       return side_of_plane(points_[v[0]], points_[v[1]], points_[v[2]], points_[s]) > 0;
@@ -88,7 +88,7 @@ class Above {
   // Where a corner is a hull vertex its neighbours tell: a hull that is not above a plane next to
   // one of its points on the plane is nowhere above it. Otherwise, and on small hulls, all vertices
   // are asked.
-  [[nodiscard]] std::span<const std::uint32_t> suspects_of(const Corners& v) const {
+  [[nodiscard]] std::span<const std::uint32_t> suspects_of(const CornerNumbers& v) const {
     for (const std::uint32_t corner : v) {
       if (corner >= hull_vertices_ || joined_.starts.empty()) continue;
       const std::uint32_t start = joined_.starts[corner], end = joined_.starts[corner + 1];
@@ -113,7 +113,7 @@ std::string visible_vertex(const Evidence& evidence, std::uint32_t index) {
   return {};
 }
 
-double area(const std::vector<PointF>& points, const Corners& v) {
+double area(const std::vector<PointF>& points, const CornerNumbers& v) {
   const Vec3d a = vec(points[v[0]]);
   return norm(cross(vec(points[v[1]]) - a, vec(points[v[2]]) - a)) / 2;
 }

@@ -10,16 +10,16 @@
 namespace palpate::bake {
 namespace {
 
-using Corners = std::array<PointF, 3>;
+using TriangleCorners = std::array<PointF, 3>;
 
-Corners corners_of(const image::RegionTriangle& t) {
-  Corners c;
+TriangleCorners corners_of(const image::RegionTriangle& t) {
+  TriangleCorners c;
   for (std::size_t i = 0; i < 3; ++i) std::copy_n(t.corners + 3 * i, 3, c[i].begin());
   return c;
 }
 
 // The same corners in the same sense of rotation.
-bool same_triangle(const Corners& a, const Corners& b) {
+bool same_triangle(const TriangleCorners& a, const TriangleCorners& b) {
   for (std::size_t shift = 0; shift < 3; ++shift) {
     if (a[0] == b[shift] && a[1] == b[(shift + 1) % 3] && a[2] == b[(shift + 2) % 3]) return true;
   }
@@ -39,8 +39,8 @@ std::string not_of_its_piece(const Evidence& evidence, const image::RegionTriang
 
 // Edge i runs from corner i to i + 1; the neighbour runs through it the other way.
 std::string not_across(const ImageView& image, const image::RegionTriangle& t, std::size_t i) {
-  const Corners mine = corners_of(t);
-  const Corners other = corners_of(image.region_triangles[t.neighbours[i]]);
+  const TriangleCorners mine = corners_of(t);
+  const TriangleCorners other = corners_of(image.region_triangles[t.neighbours[i]]);
   for (std::size_t k = 0; k < 3; ++k) {
     if (other[k] == mine[(i + 1) % 3] && other[(k + 1) % 3] == mine[i]) return {};
   }

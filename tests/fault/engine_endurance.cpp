@@ -42,7 +42,7 @@ TEST_P(EngineEndurance, mixed_ticks_allocate_nothing_fault_nothing_and_stay_in_t
   constexpr std::size_t kGuard = 4096;
   constexpr unsigned char kMark = 0xa5;
   const std::size_t bytes = required_bytes(scene.scene(), limits, settings.engine);
-  const AlignedBytes memory(kGuard + bytes + kGuard);
+  const AlignedMemory memory(kGuard + bytes + kGuard);
   std::memset(memory.data.get(), kMark, memory.size);
   ASSERT_EQ(
       create(scene.scene(), settings, limits, memory.span().subspan(kGuard, bytes), scene.engine),

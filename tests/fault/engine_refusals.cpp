@@ -25,7 +25,7 @@ const Settings kSettings{.delta_m = 0.1, .cluster_radius_m = 0.1};
 
 TEST(EngineCreate, scenes_out_of_range_need_no_memory_and_are_refused) {
   const Boxes& b = boxes();
-  AlignedBytes memory(1 << 24);
+  AlignedMemory memory(1 << 24);
   Engine* engine = nullptr;
   const std::vector<BodyPair> self{{0, 0}};
   const std::vector<BodyPair> beyond{{0, 2}};
@@ -42,7 +42,7 @@ TEST(EngineCreate, scenes_out_of_range_need_no_memory_and_are_refused) {
 TEST(EngineCreate, settings_out_of_range_are_refused) {
   const Boxes& b = boxes();
   const Scene scene{b.two, b.pair, 0};
-  AlignedBytes memory(required_bytes(scene, {}));
+  AlignedMemory memory(required_bytes(scene, {}));
   Engine* engine = nullptr;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
@@ -58,7 +58,7 @@ TEST(EngineCreate, one_byte_too_few_or_misaligned_memory_is_refused) {
   const Boxes& b = boxes();
   const Scene scene{b.two, b.pair, 0};
   const std::size_t need = required_bytes(scene, {});
-  AlignedBytes memory(need + 64);
+  AlignedMemory memory(need + 64);
   Engine* engine = nullptr;
   EXPECT_EQ(create(scene, kSettings, {}, memory.span().first(need - 1), engine),
             Status::not_enough_memory);

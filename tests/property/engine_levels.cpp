@@ -238,7 +238,7 @@ TEST(EngineLevels, scene_beyond_an_images_promise_is_refused) {
   const ImageView images[2] = {small.view, bodies().b.view};
   const BodyPair pairs[1] = {{0, 1}};
   const Scene scene{images, pairs, 0};
-  const AlignedBytes memory(required_bytes(scene, {}));
+  const AlignedMemory memory(required_bytes(scene, {}));
   Engine* engine = nullptr;
   Settings settings = with_s0(s0);
   EXPECT_EQ(create(scene, settings, {}, memory.span(), engine), Status::ok);
@@ -261,7 +261,7 @@ TEST(EngineLevels, partner_with_less_support_than_promised_is_refused) {
   const ImageView images[2] = {small.view, bodies().b.view};
   const BodyPair pairs[1] = {{0, 1}};
   const Scene scene{images, pairs, 0};
-  const AlignedBytes memory(required_bytes(scene, {}));
+  const AlignedMemory memory(required_bytes(scene, {}));
   Engine* engine = nullptr;
   EXPECT_EQ(create(scene, with_s0(1e3), {}, memory.span(), engine), Status::image_too_coarse);
 }

@@ -42,10 +42,10 @@ TEST_P(EngineRestore, continues_with_the_same_bits_at_another_address) {
       expect_same_bits(tick_or_fail(*through.engine, poses, {.units = units}),
                        tick_or_fail(*halfway.engine, poses, {.units = units}));
     }
-    const AlignedBytes copy(halfway.memory.size);
+    const AlignedMemory copy(halfway.memory.size);
     std::memcpy(copy.data.get(), halfway.memory.data.get(), copy.size);
     std::memset(halfway.memory.data.get(), 0xa5, copy.size);
-    std::vector<AlignedBytes> images;
+    std::vector<AlignedMemory> images;
     std::vector<ImageView> views(2);
     for (const BakedBody* body : {&two_balls().a, &two_balls().b}) {
       images.emplace_back(body->bytes->size);

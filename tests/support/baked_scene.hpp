@@ -24,8 +24,8 @@ struct FreeDeleter {
 };
 
 /// 64-byte aligned bytes.
-struct AlignedBytes {
-  explicit AlignedBytes(std::size_t n)
+struct AlignedMemory {
+  explicit AlignedMemory(std::size_t n)
       : size(n), data(static_cast<std::byte*>(std::aligned_alloc(64, (n + 63) / 64 * 64))) {}
   std::size_t size;
   std::unique_ptr<std::byte, FreeDeleter> data;
@@ -44,12 +44,12 @@ struct BakedBody {
   BakedBody(bake::Mesh m, const bake::BakeOptions& options) : mesh(std::move(m)) {
     bake::BakeReport report;
     const std::vector<std::byte> image = bake::bake(mesh, bake::check(mesh), options, {}, report);
-    bytes = std::make_unique<AlignedBytes>(image.size());
+    bytes = std::make_unique<AlignedMemory>(image.size());
     std::memcpy(bytes->data.get(), image.data(), image.size());
     EXPECT_EQ(validate(bytes->span(), view), Status::ok);
   }
   bake::Mesh mesh;
-  std::unique_ptr<AlignedBytes> bytes;
+  std::unique_ptr<AlignedMemory> bytes;
   ImageView view;
 };
 
@@ -64,7 +64,7 @@ struct BakedScene {
   [[nodiscard]] Scene scene() const { return {bodies, pairs, 0}; }
   std::vector<ImageView> bodies;
   std::vector<BodyPair> pairs;
-  AlignedBytes memory;
+  AlignedMemory memory;
   Engine* engine = nullptr;
 };
 

@@ -16,12 +16,12 @@ namespace {
 
 using palpate::test::TemporaryFolder;
 
-constexpr SlotLayout kLayout{512, 8};
+constexpr SlotLayout kFileLayout{512, 8};
 
 TEST(FileFlash, new_file_is_erased_and_of_full_size) {
   const TemporaryFolder folder;
-  const FileFlash flash(folder.path() / "flash", kLayout);
-  EXPECT_EQ(flash.bytes().size(), kLayout.flash_bytes());
+  const FileFlash flash(folder.path() / "flash", kFileLayout);
+  EXPECT_EQ(flash.bytes().size(), kFileLayout.flash_bytes());
   EXPECT_EQ(std::filesystem::file_size(folder.path() / "flash"), flash.bytes().size());
   for (const std::byte b : flash.bytes()) ASSERT_EQ(b, std::byte{0xff});
 }
@@ -31,14 +31,14 @@ TEST(FileFlash, image_outlives_the_process_that_wrote_it) {
   const auto image = palpate::test::seal(
       palpate::test::parts_of({palpate::test::triangle_part({0, 0, 0}, {1, 0, 0}, {0, 1, 0})}));
   {
-    FileFlash flash(folder.path() / "flash", kLayout);
-    Slots slots(flash, kLayout);
+    FileFlash flash(folder.path() / "flash", kFileLayout);
+    Slots slots(flash, kFileLayout);
     ASSERT_EQ(slots.begin(1), UpdateStatus::ok);
     ASSERT_EQ(slots.write(image), UpdateStatus::ok);
     ASSERT_EQ(slots.finish(), UpdateStatus::ok);
   }
-  FileFlash flash(folder.path() / "flash", kLayout);
-  Slots slots(flash, kLayout);
+  FileFlash flash(folder.path() / "flash", kFileLayout);
+  Slots slots(flash, kFileLayout);
   ASSERT_EQ(slots.start(), 1);
   const auto held = slots.state(1).image;
   EXPECT_TRUE(std::equal(held.begin(), held.end(), image.begin(), image.end()));
@@ -46,14 +46,14 @@ TEST(FileFlash, image_outlives_the_process_that_wrote_it) {
 
 TEST(FileFlash, what_is_not_erased_or_not_there_is_not_written) {
   const TemporaryFolder folder;
-  FileFlash flash(folder.path() / "flash", kLayout);
+  FileFlash flash(folder.path() / "flash", kFileLayout);
   const std::array<std::byte, kProgramBytes> unit{};
   EXPECT_TRUE(flash.program(64, unit));
   EXPECT_FALSE(flash.program(64, unit));
   EXPECT_FALSE(flash.program(7, unit));
-  EXPECT_FALSE(flash.program(kLayout.flash_bytes(), unit));
+  EXPECT_FALSE(flash.program(kFileLayout.flash_bytes(), unit));
   EXPECT_FALSE(flash.erase(100));
-  EXPECT_FALSE(flash.erase(kLayout.flash_bytes()));
+  EXPECT_FALSE(flash.erase(kFileLayout.flash_bytes()));
   EXPECT_TRUE(flash.erase(0));
   EXPECT_TRUE(flash.program(64, unit));
 }
@@ -61,9 +61,9 @@ TEST(FileFlash, what_is_not_erased_or_not_there_is_not_written) {
 TEST(FileFlash, file_of_another_size_or_no_place_for_one_is_refused) {
   const TemporaryFolder folder;
   const auto file = folder.write("flash", "short");
-  EXPECT_THROW(FileFlash(file, kLayout), std::system_error);
+  EXPECT_THROW(FileFlash(file, kFileLayout), std::system_error);
   EXPECT_EQ(palpate::test::read_file(file), "short");
-  EXPECT_THROW(FileFlash(folder.path() / "none" / "flash", kLayout), std::system_error);
+  EXPECT_THROW(FileFlash(folder.path() / "none" / "flash", kFileLayout), std::system_error);
 }
 
 }  // namespace

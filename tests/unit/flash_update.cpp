@@ -25,9 +25,9 @@ using simulator::OpenDevice;
 using simulator::OpenDeviceOptions;
 using simulator::Port;
 
-constexpr SlotLayout kLayout{1024, 8};
+constexpr SlotLayout kTwoSlots{1024, 8};
 
-AlignedBytes image(double radius_m, unsigned segments = 8) {
+AlignedBytes image_of(double radius_m, unsigned segments = 8) {
   return palpate::test::seal(
       palpate::test::parts_of({palpate::test::ball_part(0.5f, 5, segments)}, radius_m));
 }
@@ -35,7 +35,7 @@ AlignedBytes image(double radius_m, unsigned segments = 8) {
 OpenDeviceOptions with(FlashModel& flash) {
   OpenDeviceOptions options;
   options.flash = &flash;
-  options.layout = kLayout;
+  options.layout = kTwoSlots;
   return options;
 }
 
@@ -54,7 +54,7 @@ std::optional<DeviceProblem> write(Port& port, std::uint8_t slot,
 /// A device on a port, updated as `palpate flash` does it.
 struct UpdateRig {
   explicit UpdateRig(simulator::PortFaults faults = {})
-      : flash(kLayout), device(with(flash)), port(device, clock, std::move(faults)) {}
+      : flash(kTwoSlots), device(with(flash)), port(device, clock, std::move(faults)) {}
 
   std::optional<DeviceProblem> update(const AlignedBytes& bytes,
                                       std::optional<std::uint8_t> wanted = std::nullopt) {
@@ -98,7 +98,7 @@ TEST(DfuSuffix, golden_bytes_of_another_program_are_met) {
 }
 
 TEST(DfuSuffix, round_trip_and_every_change_of_a_byte) {
-  const AlignedBytes contents = image(1);
+  const AlignedBytes contents = image_of(1);
   std::vector<std::byte> file(contents.begin(), contents.end());
   const auto suffix = make_suffix(contents, {0x1234, 0x5678, 0x0100});
   file.insert(file.end(), suffix.begin(), suffix.end());
@@ -118,27 +118,27 @@ TEST(DfuSuffix, round_trip_and_every_change_of_a_byte) {
 
 TEST(Update, image_is_written_read_back_and_used_after_the_restart) {
   UpdateRig rig;
-  ASSERT_FALSE(rig.update(image(1)));
-  EXPECT_EQ(rig.in_use(), hash_of(image(1)));
-  ASSERT_FALSE(rig.update(image(2)));
-  EXPECT_EQ(rig.in_use(), hash_of(image(2)));
-  ASSERT_FALSE(rig.update(image(3), 0));
-  EXPECT_EQ(rig.in_use(), hash_of(image(3)));
+  ASSERT_FALSE(rig.update(image_of(1)));
+  EXPECT_EQ(rig.in_use(), hash_of(image_of(1)));
+  ASSERT_FALSE(rig.update(image_of(2)));
+  EXPECT_EQ(rig.in_use(), hash_of(image_of(2)));
+  ASSERT_FALSE(rig.update(image_of(3), 0));
+  EXPECT_EQ(rig.in_use(), hash_of(image_of(3)));
   EXPECT_FALSE(rig.flash.misused());
 }
 
 TEST(Update, device_without_a_restart_keeps_its_image) {
   UpdateRig rig;
-  ASSERT_FALSE(rig.update(image(1)));
-  ASSERT_FALSE(write(rig.port, 1, image(2)));
-  EXPECT_EQ(rig.in_use(), hash_of(image(1)));
+  ASSERT_FALSE(rig.update(image_of(1)));
+  ASSERT_FALSE(write(rig.port, 1, image_of(2)));
+  EXPECT_EQ(rig.in_use(), hash_of(image_of(1)));
 }
 
 TEST(Update, every_size_around_a_block_arrives_whole) {
   for (unsigned segments = 8; segments < 30; ++segments) {
     UpdateRig rig;
-    const auto bytes = image(1, segments);
-    if (bytes.size() > kLayout.capacity()) break;
+    const auto bytes = image_of(1, segments);
+    if (bytes.size() > kTwoSlots.capacity()) break;
     ASSERT_FALSE(rig.update(bytes)) << bytes.size();
     EXPECT_EQ(rig.in_use(), hash_of(bytes));
   }
@@ -146,12 +146,12 @@ TEST(Update, every_size_around_a_block_arrives_whole) {
 
 TEST(Update, slot_in_use_and_images_too_large_are_refused_before_anything_is_written) {
   UpdateRig rig;
-  ASSERT_FALSE(rig.update(image(1)));
+  ASSERT_FALSE(rig.update(image_of(1)));
   const std::uint64_t steps = rig.flash.steps();
-  const auto in_use = rig.update(image(2), 0);
+  const auto in_use = rig.update(image_of(2), 0);
   ASSERT_TRUE(in_use);
   EXPECT_EQ(in_use->phase, "slot");
-  const auto too_large = rig.update(image(2, 200));
+  const auto too_large = rig.update(image_of(2, 200));
   ASSERT_TRUE(too_large);
   EXPECT_EQ(too_large->phase, "size");
   EXPECT_EQ(rig.flash.steps(), steps);
@@ -169,27 +169,27 @@ TEST(Update, device_without_slots_is_named) {
 
 TEST(Update, damaged_image_is_refused_by_the_device) {
   UpdateRig rig;
-  ASSERT_FALSE(rig.update(image(1)));
-  AlignedBytes bad = image(2);
+  ASSERT_FALSE(rig.update(image_of(1)));
+  AlignedBytes bad = image_of(2);
   bad[600] ^= std::byte{1};
   const auto problem = rig.update(bad);
   ASSERT_TRUE(problem);
   EXPECT_EQ(problem->phase, "commit");
   EXPECT_EQ(problem->cause, "manifestation: what arrived is no sound image");
   rig.device.restart();
-  EXPECT_EQ(rig.in_use(), hash_of(image(1)));
+  EXPECT_EQ(rig.in_use(), hash_of(image_of(1)));
 }
 
 TEST(Update, unplugging_at_any_block_leaves_the_old_image) {
   UpdateRig rig;
-  ASSERT_FALSE(rig.update(image(1)));
+  ASSERT_FALSE(rig.update(image_of(1)));
   for (std::uint64_t cut = 1; cut < 4000; cut += 61) {
     // The plug feeds the device too.
     rig.flash.cut_power_after(cut);
-    const auto problem = rig.update(image(2));
+    const auto problem = rig.update(image_of(2));
     rig.flash.restore_power();
     rig.device.restart();
-    EXPECT_EQ(rig.in_use(), problem ? hash_of(image(1)) : hash_of(image(2))) << cut;
+    EXPECT_EQ(rig.in_use(), problem ? hash_of(image_of(1)) : hash_of(image_of(2))) << cut;
     if (!problem) break;
   }
 }
@@ -209,26 +209,26 @@ class Liar final : public OpenDevice {
 
 TEST(Update, read_back_that_differs_keeps_the_device_from_switching) {
   VirtualClock clock;
-  FlashModel flash(kLayout);
+  FlashModel flash(kTwoSlots);
   {
     OpenDevice honest(with(flash));
     Port port(honest, clock);
-    ASSERT_FALSE(write(port, 0, image(1)));
+    ASSERT_FALSE(write(port, 0, image_of(1)));
   }
   Liar device(with(flash));
   Port port(device, clock);
-  const auto problem = write(port, 1, image(2));
+  const auto problem = write(port, 1, image_of(2));
   ASSERT_TRUE(problem);
   EXPECT_EQ(problem->cause, "the device holds something else than was written");
   device.restart();
   UpdateTarget target;
   ASSERT_FALSE(read_target(port, target));
-  EXPECT_EQ(target.image.content_sha256, hash_of(image(1)));
+  EXPECT_EQ(target.image.content_sha256, hash_of(image_of(1)));
 }
 
 TEST(Update, update_ends_a_session_and_its_force) {
   UpdateRig rig;
-  ASSERT_FALSE(rig.update(image(1)));
+  ASSERT_FALSE(rig.update(image_of(1)));
   const ControlRequest begin{protocol::kVendorOut, 2, 1, 0};
   ASSERT_TRUE(rig.port.control_out(begin, {}, 0).ok());
   const std::vector<std::byte> block(64);
@@ -242,9 +242,9 @@ TEST(Update, update_ends_a_session_and_its_force) {
 // Any requests in any order: the image in use stays whole, and only a sound one is ever committed.
 TEST(DfuDevice, random_requests_never_harm_the_image_in_use) {
   std::mt19937 random(9);
-  FlashModel flash(kLayout);
-  Slots slots(flash, kLayout);
-  const AlignedBytes first = image(1);
+  FlashModel flash(kTwoSlots);
+  Slots slots(flash, kTwoSlots);
+  const AlignedBytes first = image_of(1);
   ASSERT_EQ(slots.begin(0), UpdateStatus::ok);
   ASSERT_EQ(slots.write(first), UpdateStatus::ok);
   ASSERT_EQ(slots.finish(), UpdateStatus::ok);
@@ -269,8 +269,8 @@ TEST(DfuDevice, random_requests_never_harm_the_image_in_use) {
 }
 
 TEST(DfuDevice, lost_block_is_noticed) {
-  FlashModel flash(kLayout);
-  Slots slots(flash, kLayout);
+  FlashModel flash(kTwoSlots);
+  Slots slots(flash, kTwoSlots);
   DfuDevice dfu(slots);
   const std::vector<std::byte> data(64);
   EXPECT_FALSE(dfu.handle({DfuRequest::download, 0}, data, 0).stall);

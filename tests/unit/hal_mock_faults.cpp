@@ -11,7 +11,7 @@
 namespace palpate::hal::mock {
 namespace {
 
-constexpr std::uint64_t kMs = 1'000'000;
+constexpr std::uint64_t kMillisecond_ns = 1'000'000;
 
 /// 1 kHz, moving at 1 m/s along x, with faults from 10 ms on.
 Options faulty(std::vector<FaultWindow> faults) {
@@ -34,7 +34,7 @@ std::vector<DeviceState> readings(const Options& options, std::uint64_t periods 
   EXPECT_FALSE(device.open());
   std::vector<DeviceState> seen;
   for (std::uint64_t i = 0; i < periods; ++i) {
-    device.advance_to((1000 + i) * kMs);
+    device.advance_to((1000 + i) * kMillisecond_ns);
     DeviceState state;
     if (device.receive(state)) seen.push_back(state);
   }
@@ -70,7 +70,7 @@ TEST(MockFaults, delayed_readings_arrive_late_with_their_own_time) {
   ASSERT_EQ(seen.size(), 32u);  // nothing for 8 ms
   EXPECT_EQ(seen[9].sequence, 10u);
   EXPECT_EQ(seen[10].sequence, 11u);
-  EXPECT_EQ(seen.back().time_ns, (1039 - 8) * kMs);
+  EXPECT_EQ(seen.back().time_ns, (1039 - 8) * kMillisecond_ns);
 }
 
 TEST(MockFaults, reading_that_newer_ones_overtake_within_a_period_is_not_seen) {
@@ -103,7 +103,7 @@ TEST(MockFaults, stuck_encoder_stands_still_while_time_goes_on) {
 
 TEST(MockFaults, drifting_clock_keeps_what_it_has_gained) {
   const auto seen = readings(faulty({window(FaultKind::drift, 0.1)}));
-  EXPECT_EQ(seen[5].time_ns, 1005 * kMs);
+  EXPECT_EQ(seen[5].time_ns, 1005 * kMillisecond_ns);
   EXPECT_NEAR(double(seen[30].time_ns), 1030e6 + 0.1 * 5e6, 1.0);
 }
 
@@ -122,7 +122,7 @@ TEST(FaultyLine, values_repeat_swap_and_overtake_as_the_script_says) {
     FaultyLine<int> line;
     std::vector<int> out;
     for (int i = 0; i < 6; ++i) {
-      const auto now_ns = static_cast<std::uint64_t>(i) * kMs;
+      const auto now_ns = static_cast<std::uint64_t>(i) * kMillisecond_ns;
       line.push(i, 1e-3 * i, now_ns, faults);
       while (const auto value = line.pop(now_ns)) out.push_back(*value);
     }

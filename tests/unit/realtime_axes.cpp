@@ -15,7 +15,7 @@ namespace {
 
 using test::VirtualLoop;
 
-constexpr double kStiffness_N_per_m = 600;
+constexpr double kFloor_N_per_m = 600;
 
 /// A bar along x, felt at both ends by the half-space z < 0: a force and a torque that depend on
 /// how the bar is turned.
@@ -25,7 +25,7 @@ Wrench bar_on_wall(const Pose& tool) {
     const Vec3d arm_m = rotation(tool.orientation) * Vec3d{x_m, 0, 0};
     const double depth_m = -(tool.position_m + arm_m).z;
     if (depth_m <= 0) continue;
-    const Vec3d force_N{0, 0, 0.5 * kStiffness_N_per_m * depth_m};
+    const Vec3d force_N{0, 0, 0.5 * kFloor_N_per_m * depth_m};
     w.force_N += force_N;
     w.torque_Nm += cross(arm_m, force_N);
   }

@@ -31,7 +31,7 @@ class HostChecks : public ::testing::Test {
     return it == checks.end() ? HostCheck{} : *it;
   }
 
-  test::TemporaryFolder folder;
+  palpate::test::TemporaryFolder folder;
   fs::path root = folder.path();
 };
 

@@ -27,7 +27,7 @@ Pose at(double x_m, double z_m) {
   return pose;
 }
 
-hal::mock::HandParameters pressing_hand() {
+hal::mock::HandParameters hand_on_wall() {
   hal::mock::HandParameters hand;
   hand.damping_N_s_per_m = 2;
   hand.script = {
@@ -35,7 +35,7 @@ hal::mock::HandParameters pressing_hand() {
   return hand;
 }
 
-LoopSettings for_periods(std::uint64_t periods) {
+LoopSettings lasting(std::uint64_t periods) {
   LoopSettings settings;
   settings.periods = periods;
   return settings;
@@ -82,7 +82,7 @@ Outcome pressed(const QueryOf::Function& scene, double rate_Hz) {
   LoopSettings settings;
   settings.rate_Hz = rate_Hz;
   settings.periods = static_cast<std::uint64_t>(8 * rate_Hz);
-  hal::mock::HandParameters hand = pressing_hand();
+  hal::mock::HandParameters hand = hand_on_wall();
   VirtualLoop rig(hand, settings, scene, 1u << 17, VirtualLoop::virtual_time(2 * rate_Hz));
   Outcome out{rig.run()};
   const auto records = rig.records();
@@ -166,12 +166,11 @@ TEST(DampedContacts, settle_a_tapping_hand_and_give_out_no_energy) {
   const auto tapped = [](double damping_s) {
     QueryOf contacts(wall(1000));
     DampedQuery query(contacts, damping_s, 1e-3);
-    hal::mock::HandParameters hand = pressing_hand();
+    hal::mock::HandParameters hand = hand_on_wall();
     hand.damping_N_s_per_m = 3;
-    VirtualLoop rig(hand, for_periods(1000),
-                    [&](const Pose& tool, const Budget& b, TickResult& out) {
-                      return query.tick(tool, b, out);
-                    });
+    VirtualLoop rig(hand, lasting(1000), [&](const Pose& tool, const Budget& b, TickResult& out) {
+      return query.tick(tool, b, out);
+    });
     return rig.run();
   };
   const LoopReport bare = tapped(0), damped = tapped(0.5 / 1000);
@@ -212,7 +211,7 @@ TEST(FrictionInTheLoop, holds_the_hand_until_the_pull_is_too_much_and_gives_out_
                  {1.5, at(0, -0.004)},
                  {2.5, at(0.02, -0.004)},
                  {1000, at(0.02, -0.004)}};
-  VirtualLoop rig(hand, for_periods(5000), [&](const Pose& tool, const Budget& b, TickResult& out) {
+  VirtualLoop rig(hand, lasting(5000), [&](const Pose& tool, const Budget& b, TickResult& out) {
     return query.tick(tool, b, out);
   });
   const LoopReport& r = rig.run();

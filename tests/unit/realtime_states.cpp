@@ -13,8 +13,8 @@
 namespace palpate::realtime {
 namespace {
 
-constexpr double kPeriod_s = 1e-3;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kStagePeriod_s = 1e-3;
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 /// What one tick is given.
 struct Tick {
@@ -37,7 +37,7 @@ SafetySettings quick() {
 }
 
 struct Stage {
-  SafetyStage stage{quick(), kPeriod_s};
+  SafetyStage stage{quick(), kStagePeriod_s};
   /// The wrench of the last of so many ticks.
   Wrench run(const Tick& tick, int count = 1) {
     Wrench sent;
@@ -135,10 +135,10 @@ struct Doubt {
 
 const Doubt kDoubts[] = {
     {Fault::stale_state, [](Tick& t) { t.age_s = 1; }, 1, true, false},
-    {Fault::bad_state, [](Tick& t) { t.reading.pose.position_m.y = kNan; }, 1, true, false},
+    {Fault::bad_state, [](Tick& t) { t.reading.pose.position_m.y = kNoNumber; }, 1, true, false},
     {Fault::missed_deadlines, [](Tick& t) { t.missed = 1; }, 4, true, true},
     {Fault::engine_error, [](Tick& t) { t.status = Status::bad_pose; }, 1, false, false},
-    {Fault::bad_wrench, [](Tick& t) { t.rendered.torque_Nm.x = kNan; }, 1, false, false},
+    {Fault::bad_wrench, [](Tick& t) { t.rendered.torque_Nm.x = kNoNumber; }, 1, false, false},
     {Fault::device_error, [](Tick& t) { t.reading.faults = hal::kDeviceFailed; }, 1, true, false},
     {Fault::not_homed, [](Tick& t) { t.reading.homing = true; }, 31, true, false},
 };

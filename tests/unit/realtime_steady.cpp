@@ -13,10 +13,10 @@ namespace {
 using test::QueryOf;
 using test::wall;
 
-constexpr double kPeriod_s = 1e-3;
-constexpr double kStiffness_N_per_m = 600;
+constexpr double kSteadyPeriod_s = 1e-3;
+constexpr double kWall_N_per_m = 600;
 
-Pose at_z(double z_m) {
+Pose at_height(double z_m) {
   Pose pose;
   pose.position_m.z = z_m;
   return pose;
@@ -29,12 +29,12 @@ double force_N(SteadyQuery& query, const Pose& pose) {
 }
 
 TEST(SteadyQuery, leaves_a_force_alone_that_follows_its_model) {
-  QueryOf contacts(wall(kStiffness_N_per_m));
-  SteadyQuery query(contacts, {10, 1}, kStiffness_N_per_m, kPeriod_s);
-  for (int i = 0; i < 400; ++i) static_cast<void>(force_N(query, at_z(-0.001)));
+  QueryOf contacts(wall(kWall_N_per_m));
+  SteadyQuery query(contacts, {10, 1}, kWall_N_per_m, kSteadyPeriod_s);
+  for (int i = 0; i < 400; ++i) static_cast<void>(force_N(query, at_height(-0.001)));
   // 6 N/s of the rate's 10 would be too slow for this, at 1 m/s.
-  EXPECT_NEAR(force_N(query, at_z(-0.002)), 1.2, 1e-12);
-  EXPECT_NEAR(force_N(query, at_z(-0.0005)), 0.3, 1e-12);
+  EXPECT_NEAR(force_N(query, at_height(-0.002)), 1.2, 1e-12);
+  EXPECT_NEAR(force_N(query, at_height(-0.0005)), 0.3, 1e-12);
   EXPECT_EQ(norm(query.off().force_N), 0);
 }
 
@@ -42,31 +42,31 @@ TEST(SteadyQuery, brings_a_jump_at_its_rate) {
   double stiffness = 600;
   QueryOf contacts(
       [&](const Pose& p, const Budget& b, TickResult& out) { return wall(stiffness)(p, b, out); });
-  SteadyQuery query(contacts, {50, 1}, kStiffness_N_per_m, kPeriod_s);
-  for (int i = 0; i < 100; ++i) static_cast<void>(force_N(query, at_z(-0.001)));
+  SteadyQuery query(contacts, {50, 1}, kWall_N_per_m, kSteadyPeriod_s);
+  for (int i = 0; i < 100; ++i) static_cast<void>(force_N(query, at_height(-0.001)));
   stiffness = 900;  // 0.3 N more without a motion
   for (int i = 1; i <= 6; ++i) {
-    EXPECT_NEAR(force_N(query, at_z(-0.001)), 0.6 + 0.05 * i, 1e-12);
+    EXPECT_NEAR(force_N(query, at_height(-0.001)), 0.6 + 0.05 * i, 1e-12);
     EXPECT_NEAR(query.off().force_N.z, -0.3 + 0.05 * i, 1e-12);
   }
-  EXPECT_NEAR(force_N(query, at_z(-0.001)), 0.9, 1e-12);
+  EXPECT_NEAR(force_N(query, at_height(-0.001)), 0.9, 1e-12);
 }
 
 TEST(SteadyQuery, forgets_a_contact_that_is_gone_at_its_rate) {
-  QueryOf contacts(wall(kStiffness_N_per_m));
-  SteadyQuery query(contacts, {100, 1}, kStiffness_N_per_m, kPeriod_s);
-  for (int i = 0; i < 50; ++i) static_cast<void>(force_N(query, at_z(-0.001)));
+  QueryOf contacts(wall(kWall_N_per_m));
+  SteadyQuery query(contacts, {100, 1}, kWall_N_per_m, kSteadyPeriod_s);
+  for (int i = 0; i < 50; ++i) static_cast<void>(force_N(query, at_height(-0.001)));
   // Its model, a spring, pulls beyond the wall; contacts of the new place have none.
-  EXPECT_NEAR(force_N(query, at_z(0.0005)), -0.2, 1e-12);
-  EXPECT_NEAR(force_N(query, at_z(0.0005)), -0.1, 1e-12);
-  EXPECT_NEAR(force_N(query, at_z(0.0005)), 0, 1e-12);
+  EXPECT_NEAR(force_N(query, at_height(0.0005)), -0.2, 1e-12);
+  EXPECT_NEAR(force_N(query, at_height(0.0005)), -0.1, 1e-12);
+  EXPECT_NEAR(force_N(query, at_height(0.0005)), 0, 1e-12);
 }
 
 TEST(SteadyQuery, widens_the_certificate_by_what_it_holds_back) {
-  QueryOf contacts(wall(kStiffness_N_per_m));
-  SteadyQuery query(contacts, {100, 1}, kStiffness_N_per_m, kPeriod_s);
+  QueryOf contacts(wall(kWall_N_per_m));
+  SteadyQuery query(contacts, {100, 1}, kWall_N_per_m, kSteadyPeriod_s);
   TickResult out;
-  ASSERT_EQ(query.tick(at_z(-0.001), {}, out), Status::ok);
+  ASSERT_EQ(query.tick(at_height(-0.001), {}, out), Status::ok);
   EXPECT_NEAR(out.wrench.force_N.z, 0.1, 1e-12);
   EXPECT_NEAR(out.certificate.force_bound_N, 0.5, 1e-12);
 }
@@ -78,7 +78,7 @@ struct UncertainWall {
   bool gone = false;
   bool ended_deep = false;  ///< by the budget, while overlapping
   QueryOf contacts{[this](const Pose& pose, const Budget& budget, TickResult& out) {
-    const Status status = wall(kStiffness_N_per_m)(pose, budget, out);
+    const Status status = wall(kWall_N_per_m)(pose, budget, out);
     out.wrench.force_N.z += more_N;
     if (gone) out = {};
     out.certificate.error_bound_m = error_m;
@@ -86,12 +86,12 @@ struct UncertainWall {
     if (ended_deep) out.min_distance_m = -1e-4;
     return status;
   }};
-  SteadyQuery query{contacts, {}, kStiffness_N_per_m, kPeriod_s};
+  SteadyQuery query{contacts, {}, kWall_N_per_m, kSteadyPeriod_s};
 };
 
 /// Along the wall at 0.1 m/s, a millimetre deep.
 Pose slid(int tick) {
-  Pose pose = at_z(-0.001);
+  Pose pose = at_height(-0.001);
   pose.position_m.x = 1e-4 * tick;
   return pose;
 }
@@ -119,7 +119,7 @@ TEST(SteadyQuery, is_certain_of_less_than_the_motion_makes_where_a_budget_ended_
   wall.ended_deep = true;
   wall.more_N = 0.1;
   double before_N = 0.6;
-  constexpr double kOfMotion_N = kStiffness_N_per_m * 1e-4;
+  constexpr double kOfMotion_N = kWall_N_per_m * 1e-4;
   for (int i = 100; before_N < 0.7 - 1e-12 && i < 200; ++i) {
     const double now_N = force_N(wall.query, slid(i));
     EXPECT_LE(now_N - before_N, 0.6 * kOfMotion_N + 2 * kSmooth_N);
@@ -186,10 +186,10 @@ TEST(SteadyQuery, lets_go_at_its_rate_where_certainly_nothing_touches) {
 TEST(SteadyQuery, follows_the_way_into_a_doubtful_surface) {
   UncertainWall wall;
   wall.error_m = kDoubtful_m;
-  for (int i = 0; i < 100; ++i) static_cast<void>(force_N(wall.query, at_z(-0.001)));
+  for (int i = 0; i < 100; ++i) static_cast<void>(force_N(wall.query, at_height(-0.001)));
   double before_N = 0.6;
   for (int i = 1; i <= 20; ++i) {
-    const double now_N = force_N(wall.query, at_z(-0.001 - 1e-4 * i));
+    const double now_N = force_N(wall.query, at_height(-0.001 - 1e-4 * i));
     EXPECT_GE(now_N - before_N, 0.6 * 0.06 - 1e-12);
     before_N = now_N;
   }
@@ -212,15 +212,15 @@ TEST(UsualShare, does_not_rise_much_for_a_single_change) {
 
 TEST(SteadyQuery, of_infinite_rates_is_not_there) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  QueryOf contacts(wall(kStiffness_N_per_m));
-  SteadyQuery query(contacts, {kInfinity, kInfinity}, kStiffness_N_per_m, kPeriod_s);
-  EXPECT_EQ(force_N(query, at_z(-0.001)), 0.6);
-  EXPECT_EQ(force_N(query, at_z(0.001)), 0);
+  QueryOf contacts(wall(kWall_N_per_m));
+  SteadyQuery query(contacts, {kInfinity, kInfinity}, kWall_N_per_m, kSteadyPeriod_s);
+  EXPECT_EQ(force_N(query, at_height(-0.001)), 0.6);
+  EXPECT_EQ(force_N(query, at_height(0.001)), 0);
 }
 
 TEST(SteadyQuery, hands_an_error_on) {
   QueryOf contacts([](const Pose&, const Budget&, TickResult&) { return Status::bad_pose; });
-  SteadyQuery query(contacts, {}, kStiffness_N_per_m, kPeriod_s);
+  SteadyQuery query(contacts, {}, kWall_N_per_m, kSteadyPeriod_s);
   TickResult out;
   EXPECT_EQ(query.tick({}, {}, out), Status::bad_pose);
 }

@@ -36,14 +36,14 @@ TEST(TraceRecord, layout_is_the_documented_one) {
 }
 
 TEST(TraceWriter, committed_file_holds_header_path_and_every_record) {
-  const test::TemporaryFolder folder;
+  const palpate::test::TemporaryFolder folder;
   constexpr std::uint64_t kRecords = 5000;
   hal::Ring<TraceRecord> ring(1u << 13);
   TraceWriter writer(folder.path() / "run.trace", "/somewhere/scene.toml", 1000, ring);
   for (std::uint64_t i = 0; i < kRecords; ++i) ring.push(record(i));
   writer.commit();
 
-  const std::string bytes = test::read_file(folder.path() / "run.trace");
+  const std::string bytes = palpate::test::read_file(folder.path() / "run.trace");
   TraceHeader header;
   ASSERT_GE(bytes.size(), sizeof header);
   std::memcpy(&header, bytes.data(), sizeof header);
@@ -65,7 +65,7 @@ TEST(TraceWriter, committed_file_holds_header_path_and_every_record) {
 }
 
 TEST(TraceWriter, without_commit_nothing_is_left) {
-  const test::TemporaryFolder folder;
+  const palpate::test::TemporaryFolder folder;
   hal::Ring<TraceRecord> ring(64);
   {
     TraceWriter writer(folder.path() / "run.trace", "scene.toml", 1000, ring);
@@ -76,19 +76,19 @@ TEST(TraceWriter, without_commit_nothing_is_left) {
 }
 
 TEST(TraceWriter, dropped_records_are_in_the_header) {
-  const test::TemporaryFolder folder;
+  const palpate::test::TemporaryFolder folder;
   hal::Ring<TraceRecord> ring(2);
   for (std::uint64_t i = 0; i < 5; ++i) ring.push(record(i));
   TraceWriter writer(folder.path() / "run.trace", "scene.toml", 1000, ring);
   writer.commit();
   TraceHeader header;
-  std::memcpy(&header, test::read_file(folder.path() / "run.trace").data(), sizeof header);
+  std::memcpy(&header, palpate::test::read_file(folder.path() / "run.trace").data(), sizeof header);
   EXPECT_EQ(header.records, 2u);
   EXPECT_EQ(header.dropped, 3u);
 }
 
 TEST(TraceWriter, impossible_target_is_an_error_before_the_run) {
-  const test::TemporaryFolder folder;
+  const palpate::test::TemporaryFolder folder;
   hal::Ring<TraceRecord> ring(2);
   EXPECT_THROW(TraceWriter(folder.path() / "none" / "run.trace", "s", 1000, ring),
                std::system_error);

@@ -54,7 +54,7 @@ class Damaged {
   }
 
  private:
-  AlignedBytes bytes_;
+  AlignedMemory bytes_;
 };
 
 struct Damage {

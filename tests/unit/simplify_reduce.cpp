@@ -23,14 +23,14 @@ namespace {
 constexpr double kExcess = 1.1;
 constexpr double kRounding = 1e-6;
 
-struct Case {
+struct ReducedCase {
   NormalMesh before;
   CheckReport check;
   Reduced after;
 };
 
-Case reduced(const Mesh& mesh, double max_deviation) {
-  Case c{.before = normalise(mesh), .check = check(mesh), .after = {}};
+ReducedCase reduced(const Mesh& mesh, double max_deviation) {
+  ReducedCase c{.before = normalise(mesh), .check = check(mesh), .after = {}};
   c.after = reduce(c.before, c.check, max_deviation, {});
   return c;
 }
@@ -66,7 +66,7 @@ TEST(Reduce, Both_surfaces_stay_near_one_another) {
        {std::pair{"golf_ball", 4000u}, std::pair{"jaw_lower", 3000u}, std::pair{"screw", 3000u}}) {
     for (const double most : {0.002, 0.01}) {
       SCOPED_TRACE(std::string(name) + " " + std::to_string(most));
-      const Case c = reduced(make_model(name, triangles), most);
+      const ReducedCase c = reduced(make_model(name, triangles), most);
       EXPECT_LT(c.after.mesh.faces.size(), c.before.faces.size());
       EXPECT_LE(double(c.after.deviation), most);
       const double to = farthest_sample(c.after.mesh, c.before);
@@ -81,14 +81,14 @@ TEST(Reduce, Both_surfaces_stay_near_one_another) {
 TEST(Reduce, More_deviation_leaves_fewer_triangles) {
   std::size_t last = std::numeric_limits<std::size_t>::max();
   for (const double most : {0.0005, 0.002, 0.008, 0.03}) {
-    const Case c = reduced(make_model("golf_ball", 8000), most);
+    const ReducedCase c = reduced(make_model("golf_ball", 8000), most);
     EXPECT_LT(c.after.mesh.faces.size(), last);
     last = c.after.mesh.faces.size();
   }
 }
 
 TEST(Reduce, Flat_faces_need_few_triangles) {
-  const Case c = reduced(test::quartered(test::box(0.02, 0.03, 0.05), 4), 1e-4);
+  const ReducedCase c = reduced(test::quartered(test::box(0.02, 0.03, 0.05), 4), 1e-4);
   EXPECT_EQ(c.before.faces.size(), 12u * 256);
   EXPECT_EQ(c.after.mesh.faces.size(), 12u);
   EXPECT_LE(double(c.after.deviation), kRounding);
@@ -96,7 +96,7 @@ TEST(Reduce, Flat_faces_need_few_triangles) {
 
 TEST(Reduce, Frame_and_soundness_are_kept) {
   const Mesh mesh = make_model("ball_joint_head", 5000);
-  const Case c = reduced(mesh, 0.005);
+  const ReducedCase c = reduced(mesh, 0.005);
   EXPECT_EQ(c.after.mesh.centre_m, c.before.centre_m);
   EXPECT_EQ(c.after.mesh.radius_m, c.before.radius_m);
   EXPECT_TRUE(c.after.check.bakeable());
@@ -106,7 +106,7 @@ TEST(Reduce, Frame_and_soundness_are_kept) {
 }
 
 TEST(Reduce, Borders_of_open_surfaces_stay_where_they_are) {
-  const Case c = reduced(test::bowl(24, 48, 0.05), 0.003);
+  const ReducedCase c = reduced(test::bowl(24, 48, 0.05), 0.003);
   EXPECT_LT(c.after.mesh.faces.size(), c.before.faces.size() / 2);
   EXPECT_GT(c.after.check.boundary_edges, 0u);
   EXPECT_EQ(c.after.check.components, 1u);
@@ -119,7 +119,7 @@ TEST(Reduce, Surfaces_that_nearly_touch_do_not_cross) {
   Mesh within = test::scaled(test::bumpy_ball(30, 60, 0.05), 0.99);
   for (Face& f : within.faces) std::swap(f[1], f[2]);  // a room in a solid
   test::append(mesh, within, 0, 0, 0);
-  const Case c = reduced(mesh, 0.05);
+  const ReducedCase c = reduced(mesh, 0.05);
   EXPECT_EQ(c.check.crossings, 0u);
   EXPECT_EQ(c.after.check.crossings, 0u);
   EXPECT_EQ(c.after.check.components, 2u);
@@ -127,7 +127,7 @@ TEST(Reduce, Surfaces_that_nearly_touch_do_not_cross) {
 }
 
 TEST(Reduce, Where_nothing_can_be_left_out_the_mesh_stays_itself) {
-  const Case c = reduced(test::box(0.02, 0.03, 0.05), 1e-3);
+  const ReducedCase c = reduced(test::box(0.02, 0.03, 0.05), 1e-3);
   EXPECT_EQ(c.after.mesh.points, c.before.points);
   EXPECT_EQ(c.after.mesh.faces, c.before.faces);
   EXPECT_EQ(c.after.deviation, 0);
@@ -135,9 +135,9 @@ TEST(Reduce, Where_nothing_can_be_left_out_the_mesh_stays_itself) {
 
 TEST(Reduce, Number_of_threads_does_not_matter) {
   const Mesh mesh = make_model("jaw_upper", 5000);
-  const Case all = reduced(mesh, 0.004);
+  const ReducedCase all = reduced(mesh, 0.004);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const Case alone = reduced(mesh, 0.004);
+  const ReducedCase alone = reduced(mesh, 0.004);
   EXPECT_EQ(all.after.mesh.points, alone.after.mesh.points);
   EXPECT_EQ(all.after.mesh.faces, alone.after.mesh.faces);
   EXPECT_EQ(all.after.deviation, alone.after.deviation);

@@ -24,8 +24,6 @@
 namespace palpate::cli {
 namespace {
 
-constexpr unsigned kMaxThreads = 1024;
-
 struct Options {
   std::string mesh;
   std::string image;

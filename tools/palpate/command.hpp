@@ -47,6 +47,9 @@ void write_file(const std::filesystem::path& target, std::string_view text);
 /// last copy of the result is destroyed.
 bake::Progress progress(bool quiet);
 
+/// The most that options take for a number of threads.
+constexpr unsigned kMaxThreads = 1024;
+
 /// For options: a finite number, both ends allowed. CLI::Range lets NaN pass, and unsigned options
 /// wrap -1 around.
 CLI::Validator number_between(double min, double max);

@@ -4,22 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <span>
 #include <string>
+
+#include "tools/palpate/words.hpp"
 
 namespace palpate::cli {
 namespace {
-
-std::string hex(std::span<const std::uint8_t> bytes) {
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string out;
-  out.reserve(2 * bytes.size());
-  for (const std::uint8_t b : bytes) {
-    out += kDigits[b >> 4];
-    out += kDigits[b & 15];
-  }
-  return out;
-}
 
 nlohmann::json level_json(const image::Level& level, std::size_t index) {
   const bool is_free = level.free != 0;

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const std::string& what, const fs::path& where, int error) {
+[[noreturn]] void fail_at(const std::string& what, const fs::path& where, int error) {
   throw Failure(kOther, what + " (" + std::generic_category().message(error) + ")", where.string(),
                 "give a place that exists, is writable and has room");
 }
@@ -55,7 +55,7 @@ void sync_folder(const fs::path& folder) {
 OutputFile::OutputFile(fs::path target) : target_(std::move(target)) {
   std::error_code ignored;
   const fs::file_status status = fs::status(target_, ignored);
-  if (fs::is_directory(status)) fail("cannot write the file", target_, EISDIR);
+  if (fs::is_directory(status)) fail_at("cannot write the file", target_, EISDIR);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     file_ = ::open(target_.c_str(), O_WRONLY | O_CLOEXEC);
   } else {
@@ -64,7 +64,7 @@ OutputFile::OutputFile(fs::path target) : target_(std::move(target)) {
     }
     file_ = create_temporary(target_.parent_path(), temporary_);
   }
-  if (file_ < 0) fail("cannot create the file", target_, errno);
+  if (file_ < 0) fail_at("cannot create the file", target_, errno);
 }
 
 OutputFile::OutputFile(fs::path target, std::span<const std::byte> bytes)
@@ -78,18 +78,18 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::append(std::span<const std::byte> bytes) {
-  if (!write_all(file_, bytes)) fail("cannot write the file", target_, errno);
+  if (!write_all(file_, bytes)) fail_at("cannot write the file", target_, errno);
 }
 
 void OutputFile::commit() {
   const bool synced = temporary_.empty() || ::fsync(file_) == 0;
   // Some file systems report a failed write only here.
   if (!synced || ::close(std::exchange(file_, -1)) != 0) {
-    fail("cannot write the file", target_, errno);
+    fail_at("cannot write the file", target_, errno);
   }
   if (temporary_.empty()) return;
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
-    fail("cannot rename the file", target_, errno);
+    fail_at("cannot rename the file", target_, errno);
   }
   temporary_.clear();
   sync_folder(target_.parent_path());

@@ -17,7 +17,7 @@
 namespace palpate::cli {
 namespace {
 
-struct Arguments {
+struct ReplayArguments {
   std::string scene, poses, ticks, contacts, engine;
   bool exact = false, json = false, quiet = false;
   std::optional<double> s0, budget_us, kappa, force_tolerance_N;
@@ -25,7 +25,7 @@ struct Arguments {
 };
 
 /// The scene as the file has it, then as the command line wants it.
-config::Scene load(const Arguments& a) {
+config::Scene load(const ReplayArguments& a) {
   if (a.contacts == a.ticks) {
     throw Failure(kUsage, "ticks and contacts cannot be one file", a.ticks,
                   "give --contacts another name");
@@ -128,7 +128,7 @@ class ContactTable {
   std::optional<OutputFile> file_;
 };
 
-void run(const Arguments& a) {
+void run(const ReplayArguments& a) {
   const config::Scene scene = load(a);
   const PoseTrack track = read_poses(a.poses, scene);
   const bake::Progress show = progress(a.quiet);
@@ -160,7 +160,7 @@ void run(const Arguments& a) {
   }
 }
 
-void add_budget(CLI::App& command, Arguments& a) {
+void add_budget(CLI::App& command, ReplayArguments& a) {
   CLI::Option* time =
       command.add_option("--budget-us", a.budget_us, "stop refining a tick after this time (us)");
   CLI::Option* units =
@@ -178,7 +178,7 @@ void add_replay(CLI::App& app) {
                          "Run the contact engine over recorded poses, without a device. Friction "
                          "and contact damping of the scene are felt, with velocities from the "
                          "poses of successive ticks; coupling and steadying are the loop's alone");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<ReplayArguments>();
   command->add_option("SCENE", a->scene, "scene file (TOML)")->required();
   command->add_option("--poses", a->poses, "recorded poses (CSV)")->required();
   command->add_option("-o,--output", a->ticks, "write a row a tick (CSV)")->required();

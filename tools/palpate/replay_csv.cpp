@@ -9,22 +9,22 @@ namespace palpate::cli {
 namespace {
 
 /// Appends comma-separated fields to a text.
-class Row {
+class CsvRow {
  public:
-  explicit Row(std::string& out) : out_(out) {}
-  ~Row() { out_.back() = '\n'; }  // in place of the last comma
-  Row(const Row&) = delete;
-  Row& operator=(const Row&) = delete;
+  explicit CsvRow(std::string& out) : out_(out) {}
+  ~CsvRow() { out_.back() = '\n'; }  // in place of the last comma
+  CsvRow(const CsvRow&) = delete;
+  CsvRow& operator=(const CsvRow&) = delete;
 
   template <class Number>
-  Row& operator<<(Number value) {
+  CsvRow& operator<<(Number value) {
     char text[32];
     out_.append(text, std::to_chars(text, text + sizeof text, value).ptr).push_back(',');
     return *this;
   }
-  Row& operator<<(Vec3d v) { return *this << v.x << v.y << v.z; }
-  Row& operator<<(bool) = delete;  // say which number stands for it
-  Row& empty() {
+  CsvRow& operator<<(Vec3d v) { return *this << v.x << v.y << v.z; }
+  CsvRow& operator<<(bool) = delete;  // say which number stands for it
+  CsvRow& empty() {
     out_.push_back(',');
     return *this;
   }
@@ -95,7 +95,7 @@ std::string ticks_csv(std::span<const TickRow> rows) {
   std::string out = std::string(kTicksHeader) + "\n";
   for (std::size_t tick = 0; tick < rows.size(); ++tick) {
     const TickRow& r = rows[tick];
-    Row row(out);
+    CsvRow row(out);
     row << tick << r.t_s << r.wrench.force_N << r.wrench.torque_Nm << r.contacts << r.clusters;
     if (std::isnan(r.min_distance_m)) {
       row.empty();
@@ -127,8 +127,8 @@ std::string contact_rows(std::span<const ContactRow> rows) {
   std::string out;
   for (const ContactRow& r : rows) {
     const Contact& c = r.contact;
-    Row(out) << r.tick << c.pair << c.point_a_m << c.point_b_m << c.normal << c.distance_m
-             << c.piece_a << c.level_a << c.piece_b << c.level_b << c.weight;
+    CsvRow(out) << r.tick << c.pair << c.point_a_m << c.point_b_m << c.normal << c.distance_m
+                << c.piece_a << c.level_a << c.piece_b << c.level_b << c.weight;
   }
   return out;
 }

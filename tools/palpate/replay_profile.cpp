@@ -25,14 +25,15 @@ constexpr Count kCounts[] = {{"own_queries", &Counters::own_queries},
                              {"sweeps", &Counters::sweeps},
                              {"follows", &Counters::follows}};
 
-struct Mark {
+struct HighWater {
   const char* name;
   std::uint32_t Counters::*value;
   std::uint32_t Limits::*room;
 };
-constexpr Mark kMarks[] = {{"most_nodes", &Counters::most_nodes, &Limits::nodes},
-                           {"most_waiting", &Counters::most_waiting, &Limits::nodes},
-                           {"most_contacts", &Counters::most_contacts, &Limits::contacts}};
+constexpr HighWater kHighWaters[] = {
+    {"most_nodes", &Counters::most_nodes, &Limits::nodes},
+    {"most_waiting", &Counters::most_waiting, &Limits::nodes},
+    {"most_contacts", &Counters::most_contacts, &Limits::contacts}};
 
 }  // namespace
 
@@ -50,7 +51,7 @@ std::string profile_text(const Counters& counters, const Limits& limits) {
                   double(counters.*count.value) / ticks);
     text += line;
   }
-  for (const Mark& mark : kMarks) {
+  for (const HighWater& mark : kHighWaters) {
     std::snprintf(line, sizeof line, "%-16s %12u of %u\n", mark.name, counters.*mark.value,
                   limits.*mark.room);
     text += line;
@@ -64,7 +65,7 @@ nlohmann::ordered_json profile_json(const Counters& counters) {
     json["stage_ns"][kStageNames[i]] = counters.stage_ns[i];
   }
   for (const Count& count : kCounts) json[count.name] = counters.*count.value;
-  for (const Mark& mark : kMarks) json[mark.name] = counters.*mark.value;
+  for (const HighWater& mark : kHighWaters) json[mark.name] = counters.*mark.value;
   return json;
 }
 

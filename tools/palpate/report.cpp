@@ -12,7 +12,7 @@
 namespace palpate::cli {
 namespace {
 
-struct Arguments {
+struct ReportArguments {
   std::string source, output;
   ReportHints hints;
   bool no_view = false, quiet = false;
@@ -25,7 +25,7 @@ ShownContacts contacts_of(const ReportInput& input, const Frames& frames,
                                : read_shown_contacts(view, input.lines[view.contacts_of], frames);
 }
 
-void run(const Arguments& a) {
+void run(const ReportArguments& a) {
   const std::filesystem::path page = report_page();  // before any work is done
   ReportInput input = read_report_input(a.source, a.hints);
   if (a.no_view) input.view.reset();
@@ -44,7 +44,7 @@ void run(const Arguments& a) {
 void add_report(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "report", "Show a sweep, a replay or a run: one HTML file that needs no network");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<ReportArguments>();
   command
       ->add_option("SOURCE", a->source,
                    "folder of a sweep, folder with the tables of replays, or trace of a run")

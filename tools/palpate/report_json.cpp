@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "tools/palpate/json_number.hpp"
 #include "tools/palpate/report_words.hpp"
 
 namespace palpate::cli {
@@ -18,8 +19,6 @@ using Json = nlohmann::ordered_json;
 static_assert(std::endian::native == std::endian::little);
 
 constexpr float kGap = std::numeric_limits<float>::quiet_NaN();
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 float time_us(const TickRow& row) {
   return row.time_ns == 0 ? kGap : static_cast<float>(row.time_ns) * 1e-3f;

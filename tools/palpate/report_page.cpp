@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPlace = "@PALPATE_REPORT@";
-constexpr const char* kMend =
+constexpr const char* kMendPage =
     "install node (Debian package nodejs) and build the target report_bundle, once with a network";
 
 /// JSON in which no "<" is left: "</script>" in a name would end the element.
@@ -41,18 +41,18 @@ fs::path report_page() {
     if (fs::exists(page, error)) return page;
   }
   throw Failure(kOther, "this build has no page for reports", (folder / "report.html").string(),
-                kMend);
+                kMendPage);
 }
 
 std::string fill_page(const fs::path& page, const nlohmann::ordered_json& data) {
   std::string text;
   if (const std::error_code error = config::read_text(page, text)) {
     throw Failure(kOther, "cannot read the page for reports (" + error.message() + ")",
-                  page.string(), kMend);
+                  page.string(), kMendPage);
   }
   const std::size_t place = text.find(kPlace);
   if (place == std::string::npos || text.find(kPlace, place + 1) != std::string::npos) {
-    throw Failure(kOther, "not a page for reports", page.string(), kMend);
+    throw Failure(kOther, "not a page for reports", page.string(), kMendPage);
   }
   return text.replace(place, kPlace.size(), for_html(data));
 }

@@ -13,13 +13,13 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kMend = "give the sweep.json that 'palpate sweep' wrote";
+constexpr const char* kMendSweep = "give the sweep.json that 'palpate sweep' wrote";
 
 /// The figures of one setting by name; says where what is missing.
-class Row {
+class SettingRow {
  public:
-  Row(const json& row, std::string where) : row_(row), where_(std::move(where)) {
-    if (!row_.is_object()) throw Failure(kRefused, "a setting is no object", where_, kMend);
+  SettingRow(const json& row, std::string where) : row_(row), where_(std::move(where)) {
+    if (!row_.is_object()) throw Failure(kRefused, "a setting is no object", where_, kMendSweep);
   }
 
   /// null is NaN.
@@ -42,7 +42,7 @@ class Row {
   [[nodiscard]] const json& at(const char* key) const {
     const auto found = row_.find(key);
     if (found == row_.end()) {
-      throw Failure(kRefused, std::string("no '") + key + "'", where_, kMend);
+      throw Failure(kRefused, std::string("no '") + key + "'", where_, kMendSweep);
     }
     return *found;
   }
@@ -50,7 +50,7 @@ class Row {
 
  private:
   [[noreturn]] void refuse(const char* key, const char* wanted) const {
-    throw Failure(kRefused, std::string("'") + key + "' is not " + wanted, where_, kMend);
+    throw Failure(kRefused, std::string("'") + key + "' is not " + wanted, where_, kMendSweep);
   }
 
   const json& row_;
@@ -58,7 +58,7 @@ class Row {
 };
 
 /// Only what is set: a limit that does not hold is null.
-std::string words_of(const Row& row, bool levels, bool exact) {
+std::string words_of(const SettingRow& row, bool levels, bool exact) {
   std::string out = exact ? "exact" : "";
   const auto add = [&out](const std::string& text) { out += (out.empty() ? "" : ", ") + text; };
   const auto add_number = [&](const char* key, const char* name, double scale, const char* unit) {
@@ -81,7 +81,7 @@ std::string words_of(const Row& row, bool levels, bool exact) {
   return out;
 }
 
-SweepPoint point_of(const Row& row, std::size_t place) {
+SweepPoint point_of(const SettingRow& row, std::size_t place) {
   SweepPoint p;
   p.id = row.has("id") ? row.text("id") : std::to_string(place);
   p.engine = row.text("engine");
@@ -113,16 +113,16 @@ std::vector<SweepPoint> read_sweep(const std::filesystem::path& file) {
   std::string text;
   if (const std::error_code error = config::read_text(file, text)) {
     throw Failure(kRefused, "cannot read the sweep (" + error.message() + ")", file.string(),
-                  kMend);
+                  kMendSweep);
   }
   const json list = json::parse(text, nullptr, false);
   if (!list.is_array() || list.empty()) {
-    throw Failure(kRefused, "not a list of settings", file.string(), kMend);
+    throw Failure(kRefused, "not a list of settings", file.string(), kMendSweep);
   }
   std::vector<SweepPoint> points;
   for (const json& row : list) {
     const std::string where = file.string() + ", setting " + std::to_string(points.size());
-    points.push_back(point_of(Row(row, where), points.size()));
+    points.push_back(point_of(SettingRow(row, where), points.size()));
   }
   return points;
 }

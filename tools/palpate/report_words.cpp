@@ -36,7 +36,7 @@ double quantile_of(const std::vector<TickRow>& ticks, double share, Value value)
   return quantile(std::move(values), share);
 }
 
-double time_us(const TickRow& row) {
+double microseconds_of(const TickRow& row) {
   return row.time_ns == 0 ? std::nan("") : static_cast<double>(row.time_ns) * 1e-3;
 }
 
@@ -92,7 +92,9 @@ Words sweep_words(const std::vector<SweepPoint>& points) {
 // Replays and runs.
 
 std::string times(const ReportLine& line) {
-  const auto at = [&](double share) { return time_of(quantile_of(line.ticks, share, time_us)); };
+  const auto at = [&](double share) {
+    return time_of(quantile_of(line.ticks, share, microseconds_of));
+  };
   if (at(1.0) == time_of(std::nan(""))) return "was not timed";
   return "took " + at(0.5) + " at the median, " + at(0.99) + " at p99, " + at(0.999) +
          " at p99.9, " + at(1.0) + " at most";

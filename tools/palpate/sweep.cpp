@@ -21,11 +21,10 @@
 namespace palpate::cli {
 namespace {
 
-constexpr unsigned kMaxThreads = 1024;
 // The tick's fixed work comes after the deadline, so that a budget is met by a smaller one.
 constexpr double kSharesOfBudget[] = {0.5, 0.75, 0.9};
 
-struct Arguments {
+struct SweepArguments {
   std::string scene, poses, folder;
   std::vector<std::string> engines = {"levels", "regions"}, bounds = {"tight"};
   std::vector<bool> interpolate, contact_dive;
@@ -38,7 +37,7 @@ struct Arguments {
 /// Shares of the force at touch, stiffness times delta, that regions are tried with.
 constexpr double kToleranceShares[] = {0.1, 1.0, 10.0};
 
-SweepAxes axes_of(const Arguments& a, const config::Scene& scene) {
+SweepAxes axes_of(const SweepArguments& a, const config::Scene& scene) {
   SweepAxes axes;
   for (const std::string& name : a.engines) {
     axes.engines.push_back(name == "levels" ? EngineKind::levels : EngineKind::regions);
@@ -66,7 +65,7 @@ SweepAxes axes_of(const Arguments& a, const config::Scene& scene) {
   return axes;
 }
 
-void require_one_budget(const Arguments& a) {
+void require_one_budget(const SweepArguments& a) {
   if (!a.recommend || (a.budget_us.size() == 1 && std::isfinite(a.budget_us[0]))) return;
   throw Failure(kUsage, "advice needs one budget", "--recommend",
                 "give --budget-us with one number beside it");
@@ -84,7 +83,7 @@ void print_table(std::span<const SweepRow> rows) {
   std::puts("* nothing here is both faster and more accurate");
 }
 
-void recommend(const Arguments& a, const SweepFolder& folder, const config::Scene& scene,
+void recommend(const SweepArguments& a, const SweepFolder& folder, const config::Scene& scene,
                std::span<const SweepRow> rows) {
   const double budget_us = a.budget_us[0];
   const SweepRow* best = most_accurate(rows, budget_us);
@@ -121,7 +120,7 @@ std::vector<SweepSetting> with_earlier(std::vector<SweepSetting> settings,
   return settings;
 }
 
-void sweep(const Arguments& a) {
+void sweep(const SweepArguments& a) {
   require_one_budget(a);
   const config::Scene scene = config::load_scene(a.scene);
   const PoseTrack track = read_poses(a.poses, scene);
@@ -160,7 +159,7 @@ CLI::Validator number_or_inf(double min, double max) {
   return {check, range, "number"};
 }
 
-void add_axes(CLI::App& command, Arguments& a) {
+void add_axes(CLI::App& command, SweepArguments& a) {
   command.add_option("--engine", a.engines, "levels, regions")
       ->delimiter(',')
       ->check(CLI::IsMember({"levels", "regions"}))
@@ -194,7 +193,7 @@ void add_axes(CLI::App& command, Arguments& a) {
       ->check(number_between(1e-18, 1e18));
 }
 
-void add_measures(CLI::App& command, Arguments& a) {
+void add_measures(CLI::App& command, SweepArguments& a) {
   command
       .add_option("--timed-ticks", a.runs.timed_ticks,
                   "measure the time of the first this many ticks, alone on the machine")
@@ -225,7 +224,7 @@ void add_measures(CLI::App& command, Arguments& a) {
 void add_sweep(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "sweep", "Speed against accuracy: replay a motion at many settings and exactly");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<SweepArguments>();
   command->add_option("SCENE", a->scene, "scene file (TOML)")->required();
   command->add_option("--poses", a->poses, "recorded poses (CSV)")->required();
   command

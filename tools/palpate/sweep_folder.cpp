@@ -12,6 +12,7 @@
 #include "rt_core/image/sha256.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/image_file.hpp"
+#include "tools/palpate/words.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -34,16 +35,6 @@ std::string text_of(const fs::path& file) {
                   "give a file that exists and is readable");
   }
   return text;
-}
-
-std::string hex(std::span<const std::uint8_t> bytes) {
-  constexpr const char* kDigits = "0123456789abcdef";
-  std::string out;
-  for (const std::uint8_t byte : bytes) {
-    out += kDigits[byte >> 4];
-    out += kDigits[byte & 15];
-  }
-  return out;
 }
 
 /// Hash of everything that the ticks depend on but the settings; reads each image once.

@@ -17,14 +17,14 @@ using plot::Series;
 constexpr std::size_t kProfiles = 6;
 constexpr std::size_t kPointsALine = 500;  // more cannot be told apart
 
-std::string number(double value) {
+std::string short_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", value);
   return text;
 }
 
 Panel trade_panel(std::span<const SweepRow> rows, double delta_m) {
-  Panel panel{"delta " + number(delta_m * 1e3) + " mm",
+  Panel panel{"delta " + short_number(delta_m * 1e3) + " mm",
               {"median time of a tick, us", true},
               {"force error (NRMSE), %", false},
               {{"levels", Mark::point, {}},
@@ -46,8 +46,9 @@ Panel trade_panel(std::span<const SweepRow> rows, double delta_m) {
 std::string name_of(const SweepSetting& s) {
   const std::string engine = s.engine == EngineKind::levels ? "levels" : "regions";
   if (s.exact) return engine + ", exact" + (s.bounds == Bounds::paper ? ", paper's" : "");
-  if (s.engine == EngineKind::regions) return engine + ", " + number(s.force_tolerance_N) + " N";
-  return engine + ", s0 " + number(100 * s.s0) + " %" + (s.contact_dive ? ", dives" : "");
+  if (s.engine == EngineKind::regions)
+    return engine + ", " + short_number(s.force_tolerance_N) + " N";
+  return engine + ", s0 " + short_number(100 * s.s0) + " %" + (s.contact_dive ? ", dives" : "");
 }
 
 /// What the paper's figures show.

@@ -5,16 +5,16 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/json_number.hpp"
 
 namespace palpate::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 
 /// Loads exact runs once, however many settings they are compared with.
 class References {
@@ -33,12 +33,12 @@ class References {
   std::map<std::string, std::vector<TickRow>> ticks_;
 };
 
-double ratio(double a, double b) { return b > 0 ? a / b : kNone; }
+double ratio(double a, double b) { return b > 0 ? a / b : kNotKnown; }
 
 /// Against the exact run with the paper's bounds at the same delta.
 void compare_with_paper(std::vector<SweepRow>& rows) {
   for (SweepRow& row : rows) {
-    row.speedup_median = row.front_ratio = kNone;
+    row.speedup_median = row.front_ratio = kNotKnown;
     for (const SweepRow& paper : rows) {
       const SweepSetting& s = paper.setting;
       if (!s.exact || s.bounds != Bounds::paper || s.delta_m != row.setting.delta_m) continue;
@@ -65,8 +65,6 @@ void mark_pareto(std::vector<SweepRow>& rows) {
                               [&](const SweepRow& other) { return beats(other, row); });
   }
 }
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 /// Nanoseconds are whole numbers.
 Json whole(double value) {
@@ -165,7 +163,8 @@ std::vector<SweepRow> tabulate(const SweepFolder& folder, std::span<const SweepS
     row.setting = setting;
     row.figures = figures(ticks, exact, observer, setting.delta_m, folder.radius_m());
     const std::vector<TickRow>& levels = references.of({.exact = true, .delta_m = setting.delta_m});
-    row.force_nrmse_levels = levels.empty() ? kNone : nrmse(forces_of(ticks), forces_of(levels));
+    row.force_nrmse_levels =
+        levels.empty() ? kNotKnown : nrmse(forces_of(ticks), forces_of(levels));
   }
   compare_with_paper(rows);
   mark_pareto(rows);

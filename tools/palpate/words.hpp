@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 namespace palpate::cli {
@@ -18,5 +19,8 @@ std::string count_of(std::uint64_t count, const char* one, const char* many);
 
 /// With the unit that fits: "812 ns", "15.1 us", "13.42 ms".
 std::string duration(std::uint64_t ns);
+
+/// Two lower-case digits a byte.
+std::string hex(std::span<const std::uint8_t> bytes);
 
 }  // namespace palpate::cli

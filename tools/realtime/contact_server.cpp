@@ -2,19 +2,11 @@
 #include "tools/realtime/contact_server.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "rt_core/force/linear_contact.hpp"
+#include "tools/realtime/budget_clock.hpp"
 
 namespace palpate::realtime {
-namespace {
-
-std::uint64_t clock_of(void* context) { return static_cast<hal::Clock*>(context)->now_ns(); }
-
-std::uint64_t nanoseconds(double s) { return static_cast<std::uint64_t>(std::llround(1e9 * s)); }
-
-}  // namespace
-
 void ContactServer::run(const ServerSettings& settings, hal::Clock& clock,
                         const std::atomic<bool>& stop) noexcept {
   const std::uint64_t period_ns = nanoseconds(1 / settings.rate_Hz);

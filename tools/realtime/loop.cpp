@@ -5,13 +5,10 @@
 #include <cmath>
 
 #include "hal/rotation.hpp"
+#include "tools/realtime/budget_clock.hpp"
 
 namespace palpate::realtime {
 namespace {
-
-std::uint64_t clock_of(void* context) { return static_cast<hal::Clock*>(context)->now_ns(); }
-
-std::uint64_t nanoseconds(double s) { return static_cast<std::uint64_t>(std::llround(1e9 * s)); }
 
 std::uint64_t elapsed(std::uint64_t from_ns, std::uint64_t to_ns) {
   return to_ns > from_ns ? to_ns - from_ns : 0;
