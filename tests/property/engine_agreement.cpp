@@ -8,11 +8,12 @@
 
 #include "host_bake/models/models.hpp"
 #include "tests/support/baked_scene.hpp"
+#include "tests/support/effort.hpp"
 
 namespace palpate::test {
 namespace {
 
-constexpr int kTicks = 1500;
+constexpr int kTicks = effort(1500, 400);
 
 /// A tool pressed into another body and led over it, held at a depth that swings.
 struct Press {

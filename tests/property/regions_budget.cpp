@@ -12,6 +12,7 @@
 #include "tests/support/allocation_trap.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/counting_clock.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/support/ground.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -78,7 +79,7 @@ TEST(RegionsBudget, depths_of_what_crosses_are_known_where_the_budget_nearly_doe
   BakedScene budgeted({upper.view, lower.view}, {{0, 1}}, settings);
   double squares = 0, peak = 0, units = 0;
   int crossing = 0, ticks = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < kSlide; ++i) {
     const Pose poses[2] = {ground(0.1, i), {}};
     const TickResult truth = tick_or_fail(*exact.engine, poses);
     const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = 1500});
@@ -107,7 +108,7 @@ TEST(RegionsBudget, after_a_jump_what_is_deepest_is_known_first) {
   const Settings settings{
       .engine = EngineKind::regions, .delta_m = delta_m, .cluster_radius_m = delta_m};
   double squares = 0, peak = 0, units = 0;
-  constexpr int kJumps = 40;
+  constexpr int kJumps = effort(40, 10);
   for (int i = 0; i < kJumps; ++i) {
     Pose poses[2] = {ground(0.1, 15 * i), {}};
     poses[0].position_m.z += 8e-4;  // apart
@@ -136,9 +137,10 @@ TEST(RegionsBudget, few_near_regions_of_many_are_found_after_a_jump) {
                           .delta_m = options.delta_rel * radius_m,
                           .cluster_radius_m = options.delta_rel * radius_m};
   constexpr std::uint64_t kUnits = 3000;
+  constexpr int kPoses = effort(20, 6);
   double most = 0;
   int felt = 0;
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < kPoses; ++i) {
     const Pose poses[2] = {{{2 * radius_m, 0, 0}, turn({0.4 * i, 0.7 * i, 0.1 * i})}, {}};
     BakedScene exact({ball.view, ball.view}, {{0, 1}}, settings);
     BakedScene budgeted({ball.view, ball.view}, {{0, 1}}, settings);
@@ -151,7 +153,7 @@ TEST(RegionsBudget, few_near_regions_of_many_are_found_after_a_jump) {
   }
   RecordProperty("regions", static_cast<int>(ball.view.regions.size()));
   RecordProperty("units", std::to_string(most));
-  EXPECT_GT(felt, 10);
+  EXPECT_GT(felt, kPoses / 2);
   EXPECT_LT(most, kUnits);
 }
 
@@ -183,13 +185,14 @@ Pose touching_ball(double radius_m, double angle) {
 /// where it touches is followed over the surface, from region to region.
 TEST(RegionsBudget, fast_bodies_do_not_lose_touch) {
   constexpr double kDeltaRel = 0.02;
+  constexpr int kSlide = effort(300, 100);
   const Models balls("golf_ball", "golf_ball", 20'000, kDeltaRel);
   const double radius_m = balls.a.view.header->radius_m;
   BakedScene exact = balls.scene();
   BakedScene budgeted = balls.scene();
   int touching = 0, lost = 0;
   double squares = 0, peak = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < kSlide; ++i) {
     const Pose poses[2] = {touching_ball(radius_m, 0.25 * kDeltaRel * i), {}};
     const TickResult truth = tick_or_fail(*exact.engine, poses);
     const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = 70});
@@ -201,7 +204,7 @@ TEST(RegionsBudget, fast_bodies_do_not_lose_touch) {
   }
   const double error = std::sqrt(squares / touching) / peak;
   RecordProperty("error", std::to_string(error));
-  EXPECT_GT(touching, 250);
+  EXPECT_GT(touching, kSlide - 50);
   EXPECT_EQ(lost, 0);
   EXPECT_LT(error, 0.35);
 }
@@ -209,6 +212,7 @@ TEST(RegionsBudget, fast_bodies_do_not_lose_touch) {
 /// What is done however late a tick is goes to where the ball touches.
 TEST(RegionsBudget, fast_bodies_do_not_lose_touch_in_ticks_that_are_late_when_they_begin) {
   constexpr double kDeltaRel = 0.01;
+  constexpr int kSlide = effort(300, 100);
   const Models balls("golf_ball", "golf_ball", 20'000, kDeltaRel);
   const double radius_m = balls.a.view.header->radius_m;
   BakedScene exact = balls.scene();
@@ -228,7 +232,7 @@ TEST(RegionsBudget, fast_bodies_do_not_lose_touch_in_ticks_that_are_late_when_th
     lost += found.contacts.empty() ? 1 : 0;
   }
   RecordProperty("lost", lost);
-  EXPECT_GT(touching, 250);
+  EXPECT_GT(touching, kSlide - 50);
   EXPECT_EQ(lost, 0);
 }
 
@@ -236,8 +240,9 @@ TEST(RegionsBudget, fast_bodies_do_not_lose_touch_in_ticks_that_are_late_when_th
 TEST(RegionsBudget, however_little_there_is_after_a_jump_some_contact_is_known) {
   const Models balls("golf_ball", "golf_ball", 20'000, 0.01);
   const double radius_m = balls.a.view.header->radius_m;
+  constexpr int kJumps = effort(100, 20);
   int touching = 0, lost = 0;
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < kJumps; ++i) {
     const Pose poses[2] = {{{1.99 * radius_m, 0, 0}, turn({0.4 * i, 0.7 * i, 0.1 * i})}, {}};
     BakedScene exact = balls.scene();
     BakedScene budgeted = balls.scene();
@@ -246,7 +251,7 @@ TEST(RegionsBudget, however_little_there_is_after_a_jump_some_contact_is_known) 
     lost += tick_or_fail(*budgeted.engine, poses, {.units = 100}).contacts.empty() ? 1 : 0;
   }
   RecordProperty("lost", lost);
-  EXPECT_GT(touching, 90);
+  EXPECT_GT(touching, 9 * kJumps / 10);
   EXPECT_EQ(lost, 0);
 }
 
@@ -256,8 +261,9 @@ TEST(RegionsBudget, fast_passes_find_where_they_meet) {
   BakedScene exact = jaws.scene();
   BakedScene budgeted = jaws.scene();
   constexpr double kFeltWell = 0.8;  // of delta; farther contacts push little
+  constexpr int kPasses = effort(400, 100);
   int touching = 0, lost = 0;
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < kPasses; ++i) {
     Pose poses[2] = {ground(0.1, 10 * i), {}};
     poses[0].position_m.z += 1e-3;
     const TickResult truth = tick_or_fail(*exact.engine, poses);
@@ -269,7 +275,7 @@ TEST(RegionsBudget, fast_passes_find_where_they_meet) {
   }
   RecordProperty("touching", touching);
   RecordProperty("lost", lost);
-  EXPECT_GT(touching, 100);
+  EXPECT_GT(touching, kPasses / 4);
   EXPECT_EQ(lost, 0);
 }
 
@@ -481,7 +487,7 @@ TEST(RegionsRefusals, image_without_regions_is_refused) {
   const std::vector<ImageView> views = {levels_only.view, bodies().b.view};
   const std::vector<BodyPair> pairs = {{0, 1}};
   const Scene scene{views, pairs, 0};
-  AlignedBytes memory(required_bytes(scene, {}, EngineKind::regions));
+  AlignedMemory memory(required_bytes(scene, {}, EngineKind::regions));
   Engine* engine = nullptr;
   EXPECT_EQ(create(scene, kSettings, {}, memory.span(), engine), Status::image_missing_section);
 }

@@ -16,6 +16,7 @@
 #include "rt_core/regions/follow.hpp"
 #include "rt_core/workspace.hpp"
 #include "tests/support/baked_scene.hpp"
+#include "tests/support/effort.hpp"
 
 namespace palpate::test {
 namespace {
@@ -85,7 +86,7 @@ TEST(RegionsFollow, witnesses_are_never_nearer_than_the_truth_and_bounds_hold) {
   for (const std::uint64_t units : {1000u, 3000u}) {
     BakedScene exact = scene();
     BakedScene followed = scene();
-    for (int i = 0; i < kTicks; ++i) {
+    for (int i = 0; i < effort(kTicks, 20); ++i) {
       const TickResult truth = tick_at(exact, i);
       const TickResult r = tick_at(followed, i, {.units = units});
       const std::vector<double> least = depths(exact, truth);

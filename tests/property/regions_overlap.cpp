@@ -9,6 +9,7 @@
 
 #include "host_bake/models/models.hpp"
 #include "tests/support/baked_scene.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace palpate::test {
@@ -134,7 +135,7 @@ TEST(RegionsOverlap, corner_in_a_face_is_pushed_along_its_normal_before_and_afte
 std::vector<Pose> ground(BakedScene& scene, double delta_m) {
   std::vector<Pose> path;
   double height_m = 0.0015;
-  for (int t = 0; t < 1000; ++t) {
+  for (int t = 0; t < effort(1000, 300); ++t) {
     const Pose poses[2] = {
         {{1e-3 * std::sin(0.004 * t), 1e-3 * std::sin(0.0061 * t), height_m}, {}}, {}};
     const TickResult r = tick_or_fail(*scene.engine, poses);
@@ -197,7 +198,7 @@ TEST(RegionsOverlap, force_hardly_depends_on_how_surfaces_are_divided) {
 /// A screw pushed from all sides in its nut, up to 0.15 delta.
 std::vector<Pose> pushed(BakedScene& scene, double delta_m) {
   std::vector<Pose> path;
-  for (int k = 0; k < 40; ++k) {
+  for (int k = 0; k < effort(40, 10); ++k) {
     const Vec3d to{std::cos(0.9 * k), std::sin(0.9 * k), std::cos(0.37 * k)};
     double way_m = 0;
     for (double step_m = 0.5 * delta_m; step_m > 1e-3 * delta_m; step_m *= 0.5) {

@@ -4,11 +4,11 @@
 
 namespace palpate::test {
 
-/// `all`; under the thread sanitizer `few`, because every memory access costs some twenty times
-/// there and code of one thread has nothing for it to see in more cases.
+/// `all`; under sanitizers `few`, because every memory access costs several times there, the thread
+/// sanitizer's some twenty times, and more cases take the same ways through the code.
 template <class T>
 constexpr T effort([[maybe_unused]] T all, [[maybe_unused]] T few) {
-#ifdef PALPATE_THREAD_SANITIZER
+#ifdef PALPATE_SANITIZED
   return few;
 #else
   return all;
