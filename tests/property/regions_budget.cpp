@@ -79,7 +79,7 @@ TEST(RegionsBudget, depths_of_what_crosses_are_known_where_the_budget_nearly_doe
   BakedScene budgeted({upper.view, lower.view}, {{0, 1}}, settings);
   double squares = 0, peak = 0, units = 0;
   int crossing = 0, ticks = 0;
-  for (int i = 0; i < kSlide; ++i) {
+  for (int i = 0; i < 300; ++i) {
     const Pose poses[2] = {ground(0.1, i), {}};
     const TickResult truth = tick_or_fail(*exact.engine, poses);
     const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = 1500});
@@ -219,7 +219,7 @@ TEST(RegionsBudget, fast_bodies_do_not_lose_touch_in_ticks_that_are_late_when_th
   BakedScene late = balls.scene();
   CountingClock clock;
   int touching = 0, lost = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < kSlide; ++i) {
     const Pose poses[2] = {touching_ball(radius_m, 0.25 * kDeltaRel * i), {}};
     const TickResult truth = tick_or_fail(*exact.engine, poses);
     Budget budget;
