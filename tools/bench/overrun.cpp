@@ -16,10 +16,8 @@
 // the longest such piece that a deadline passed in, and the longest time from the first look past
 // the deadline to the tick's end. Then the mean time of a work unit; ticks that had no contact
 // where the engine's exact query has one (lost), those among them whose force is more than a
-// twentieth of the largest, those of these in which what a loop sends to the device
-// (realtime::SteadyQuery with its usual rates, at 1 kHz) is less than that (silent), how many
-// follow each other at most, and those whose certificate rules out the contact that is there
-// (denied; must be 0); ticks that rightly have none but do not rule
+// twentieth of the largest, how many follow each other at most, and those whose certificate rules
+// out the contact that is there (denied; must be 0); ticks that rightly have none but do not rule
 // one out (undecided), of those that have none (apart); and the root mean square error of the force
 // over the largest (nrmse), all against the exact query. Wants a core of its own: `chrt -f 50
 // taskset -c 1 bench_overrun ...`.
@@ -37,7 +35,6 @@
 
 #include "tools/bench/clock_tape.hpp"
 #include "tools/bench/scenes.hpp"
-#include "tools/realtime/steady_query.hpp"
 
 namespace palpate::bench {
 namespace {
@@ -48,7 +45,6 @@ constexpr std::uint64_t kPass = 1000;  // ticks between leaps
 constexpr double kLate_us = 10;        // ticks that end later past their deadline are repeated
 constexpr int kRepeats = 3;
 constexpr double kFelt = 0.05;      // of the largest force
-constexpr double kPeriod_s = 1e-3;  // of a loop
 constexpr double kRounding = 1e-6;  // of delta
 // A thread that never sleeps has its processor taken away by the kernel, in favour of others that
 // wait for it (sched_rt_runtime_us; since Linux 6.12 the fair server, 50 ms of each second). A
@@ -115,7 +111,6 @@ struct Row {
   double busy_us = 0, units = 0;
   std::uint64_t lost = 0;
   std::uint64_t lost_felt = 0;    ///< of these, with a force of more than kFelt of the peak
-  std::uint64_t silent = 0;       ///< of these, with less than that sent to the device
   std::uint64_t lost_in_row = 0;  ///< most that follow each other
   std::uint64_t denied = 0;       ///< of the lost, by their certificates
   std::uint64_t undecided = 0;    ///< of the ticks apart
@@ -164,15 +159,6 @@ class Pieces {
 
  private:
   std::vector<std::uint64_t> shortest_ns_;
-};
-
-/// What an engine has found, to a loop that asks for it.
-struct Found final : realtime::ContactQuery {
-  Status tick(const Pose&, const Budget&, TickResult& out) noexcept override {
-    out = result;
-    return Status::ok;
-  }
-  TickResult result;
 };
 
 /// An engine that does what another has done, as often as is wanted.
@@ -228,8 +214,6 @@ Row run(Bench& bench, Twin& twin, const std::vector<Place>& places, std::uint64_
   twin.forget();
   const double peak = peak_of(places);
   const double delta_m = bench.settings().delta_m;
-  Found found;
-  realtime::SteadyQuery loop(found, {}, bench.settings().stiffness_N_per_m, kPeriod_s);
   Walk walk;
   std::uint64_t in_row = 0;
   std::uint64_t woken = cli::wall_ns();
@@ -251,12 +235,7 @@ Row run(Bench& bench, Twin& twin, const std::vector<Place>& places, std::uint64_
     in_row = lost ? in_row + 1 : 0;
     row.lost_in_row = std::max(row.lost_in_row, in_row);
     row.lost += lost ? 1u : 0u;
-    const bool lost_felt = lost && norm(place.force_N) > kFelt * peak;
-    row.lost_felt += lost_felt ? 1u : 0u;
-    found.result = r;
-    TickResult sent;
-    loop.tick(place.pose, budget, sent);
-    row.silent += lost_felt && norm(sent.wrench.force_N) < kFelt * peak ? 1u : 0u;
+    row.lost_felt += lost && norm(place.force_N) > kFelt * peak ? 1u : 0u;
     const double least_m = delta_m - r.certificate.error_bound_m;
     const bool ruled_out = r.certificate.contact == ContactStatus::ruled_out ||
                            place.distance_m < least_m - kRounding * delta_m;
@@ -299,21 +278,21 @@ int measure(std::string_view engine, std::uint64_t ticks, int count, char** budg
   std::puts(
       "engine,budget,ticks,ended_by_deadline,over_p50_us,over_p99.9_us,over_p99.999_us,"
       "over_max_us,repeated,own_p99.9_us,own_p99.999_us,own_max_us,piece_max_us,rest_max_us,"
-      "unit_us,lost,lost_felt,silent,lost_in_row,denied,undecided,apart,nrmse");
+      "unit_us,lost,lost_felt,lost_in_row,denied,undecided,apart,nrmse");
   for (int i = 0; i < count; ++i) {
     Row row = run(bench, twin, places, ticks, Allowed(budgets[i]));
     std::sort(row.over_us.begin(), row.over_us.end());
     std::sort(row.own_us.begin(), row.own_us.end());
     std::printf(
         "%.*s,%s,%llu,%zu,%.1f,%.1f,%.1f,%.1f,%llu,%.1f,%.1f,%.1f,%.1f,%.1f,%.3f,%llu,%llu,%llu,%"
-        "llu,%llu,%llu,%llu,%.4f\n",
+        "llu,%llu,%llu,%.4f\n",
         static_cast<int>(engine.size()), engine.data(), budgets[i],
         static_cast<unsigned long long>(ticks), row.over_us.size(), at_share(row.over_us, 0.5),
         at_share(row.over_us, 0.999), at_share(row.over_us, 0.99999), at_share(row.over_us, 1),
         static_cast<unsigned long long>(row.repeated), at_share(row.own_us, 0.999),
         at_share(row.own_us, 0.99999), at_share(row.own_us, 1), row.piece_us, row.rest_us,
         row.busy_us / std::max(row.units, 1.0), static_cast<unsigned long long>(row.lost),
-        static_cast<unsigned long long>(row.lost_felt), static_cast<unsigned long long>(row.silent),
+        static_cast<unsigned long long>(row.lost_felt),
         static_cast<unsigned long long>(row.lost_in_row),
         static_cast<unsigned long long>(row.denied), static_cast<unsigned long long>(row.undecided),
         static_cast<unsigned long long>(row.apart),
