@@ -45,6 +45,8 @@ if(PALPATE_SANITIZE)
   if(PALPATE_SANITIZE STREQUAL "thread")
     # GCC and Clang have no common name for it.
     target_compile_definitions(palpate_flags INTERFACE PALPATE_THREAD_SANITIZER)
+  elseif(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    target_compile_options(palpate_flags INTERFACE "-fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/tests/asan/ignored")
   endif()
 endif()
 if(PALPATE_COVERAGE)

@@ -8,12 +8,11 @@
 
 #include "host_bake/models/models.hpp"
 #include "tests/support/baked_scene.hpp"
-#include "tests/support/effort.hpp"
 
 namespace palpate::test {
 namespace {
 
-constexpr int kTicks = effort(1500, 400);
+constexpr int kTicks = 1500;
 
 /// A tool pressed into another body and led over it, held at a depth that swings.
 struct Press {

@@ -10,7 +10,6 @@
 #include "rt_core/regions/region_state.hpp"
 #include "rt_core/regions/sweep.hpp"
 #include "tests/support/brute_force.hpp"
-#include "tests/support/effort.hpp"
 #include "tests/support/placements.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -131,7 +130,7 @@ TEST(RegionsRest, where_nothing_that_is_kept_would_last) {
   const BakedBody inner(ball(80, 120, 0.97), options);
   const BakedBody outer(bowl(80, 120, 1), options);
   constexpr double kDelta = 0.05;
-  constexpr int kTicks = effort(20, 3);
+  constexpr int kTicks = 20;
   BakedScene scene({inner.view, outer.view}, {{0, 1}}, exact_settings(kDelta));
   std::uint64_t units = 0;
   std::uint64_t cold = 0;
