@@ -5,6 +5,9 @@
 
 #include <cstring>
 #include <limits>
+#include <map>
+#include <string>
+#include <tuple>
 
 #include "host_bake/models/models.hpp"
 #include "rt_core/counters.hpp"
@@ -97,23 +100,40 @@ TEST(RegionsBudget, depths_of_what_crosses_are_known_where_the_budget_nearly_doe
   EXPECT_LT(std::sqrt(squares / ticks) / peak, 0.03);
 }
 
+/// A model baked for the region engine, once however many tests ask for it.
+const BakedBody& baked(const std::string& model, std::size_t triangles, double delta_rel) {
+  static std::map<std::tuple<std::string, std::size_t, double>, BakedBody> kept;
+  bake::BakeOptions options = options_for(bake::ForEngine::regions);
+  options.delta_rel = delta_rel;
+  const auto key = std::tuple(model, triangles, delta_rel);
+  const auto at = kept.find(key);
+  if (at != kept.end()) return at->second;
+  return kept.try_emplace(key, bake::make_model(model, triangles), options).first->second;
+}
+
+/// Two models and the settings of their scene, delta relative to the first one's radius.
+struct Models {
+  Models(const char* of_a, const char* of_b, std::size_t triangles, double delta_rel)
+      : a(baked(of_a, triangles, delta_rel)), b(baked(of_b, triangles, delta_rel)) {
+    settings.delta_m = settings.cluster_radius_m = delta_rel * a.view.header->radius_m;
+  }
+  BakedScene scene() const { return {{a.view, b.view}, {{0, 1}}, settings}; }
+
+  const BakedBody &a, &b;
+  Settings settings{.engine = EngineKind::regions};
+};
+
 /// Nearly everything is open then, and the force is that of the deepest contacts: some cross, whose
 /// directions take units of their own, however the others are found.
 TEST(RegionsBudget, after_a_jump_what_is_deepest_is_known_first) {
-  bake::BakeOptions options = options_for(bake::ForEngine::regions);
-  options.delta_rel = 0.02;
-  const BakedBody upper(bake::make_model("jaw_upper", 24'000), options);
-  const BakedBody lower(bake::make_model("jaw_lower", 24'000), options);
-  const double delta_m = options.delta_rel * upper.view.header->radius_m;
-  const Settings settings{
-      .engine = EngineKind::regions, .delta_m = delta_m, .cluster_radius_m = delta_m};
+  const Models jaws("jaw_upper", "jaw_lower", 24'000, 0.02);
   double squares = 0, peak = 0, units = 0;
   constexpr int kJumps = effort(40, 10);
   for (int i = 0; i < kJumps; ++i) {
     Pose poses[2] = {ground(0.1, 15 * i), {}};
     poses[0].position_m.z += 8e-4;  // apart
-    BakedScene exact({upper.view, lower.view}, {{0, 1}}, settings);
-    BakedScene budgeted({upper.view, lower.view}, {{0, 1}}, settings);
+    BakedScene exact = jaws.scene();
+    BakedScene budgeted = jaws.scene();
     const TickResult truth = tick_or_fail(*exact.engine, poses);
     const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = 4000});
     units += static_cast<double>(truth.queries) / kJumps;
@@ -129,21 +149,16 @@ TEST(RegionsBudget, after_a_jump_what_is_deepest_is_known_first) {
 /// Of some two thousand regions twenty are near: a budget that does for searching those and for
 /// ruling out the others has all contacts.
 TEST(RegionsBudget, few_near_regions_of_many_are_found_after_a_jump) {
-  bake::BakeOptions options = options_for(bake::ForEngine::regions);
-  options.delta_rel = 0.01;
-  const BakedBody ball(bake::make_model("golf_ball", 20'000), options);
-  const double radius_m = ball.view.header->radius_m;
-  const Settings settings{.engine = EngineKind::regions,
-                          .delta_m = options.delta_rel * radius_m,
-                          .cluster_radius_m = options.delta_rel * radius_m};
+  const Models balls("golf_ball", "golf_ball", 20'000, 0.01);
+  const double radius_m = balls.a.view.header->radius_m;
   constexpr std::uint64_t kUnits = 3000;
   constexpr int kPoses = effort(20, 6);
   double most = 0;
   int felt = 0;
   for (int i = 0; i < kPoses; ++i) {
     const Pose poses[2] = {{{2 * radius_m, 0, 0}, turn({0.4 * i, 0.7 * i, 0.1 * i})}, {}};
-    BakedScene exact({ball.view, ball.view}, {{0, 1}}, settings);
-    BakedScene budgeted({ball.view, ball.view}, {{0, 1}}, settings);
+    BakedScene exact = balls.scene();
+    BakedScene budgeted = balls.scene();
     const TickResult truth = tick_or_fail(*exact.engine, poses);
     const TickResult found = tick_or_fail(*budgeted.engine, poses, {.units = kUnits});
     most = std::max(most, static_cast<double>(truth.queries));
@@ -151,29 +166,11 @@ TEST(RegionsBudget, few_near_regions_of_many_are_found_after_a_jump) {
     EXPECT_EQ(found.contacts.size(), truth.contacts.size());
     EXPECT_LE(norm(found.wrench.force_N - truth.wrench.force_N), 1e-3 * norm(truth.wrench.force_N));
   }
-  RecordProperty("regions", static_cast<int>(ball.view.regions.size()));
+  RecordProperty("regions", static_cast<int>(balls.a.view.regions.size()));
   RecordProperty("units", std::to_string(most));
   EXPECT_GT(felt, kPoses / 2);
   EXPECT_LT(most, kUnits);
 }
-
-/// Two models and the settings of their scene, delta relative to the first one's radius.
-struct Models {
-  Models(const char* of_a, const char* of_b, std::size_t triangles, double delta_rel)
-      : a(bake::make_model(of_a, triangles), options(delta_rel)),
-        b(bake::make_model(of_b, triangles), options(delta_rel)) {
-    settings.delta_m = settings.cluster_radius_m = delta_rel * a.view.header->radius_m;
-  }
-  static bake::BakeOptions options(double delta_rel) {
-    bake::BakeOptions made = options_for(bake::ForEngine::regions);
-    made.delta_rel = delta_rel;
-    return made;
-  }
-  BakedScene scene() const { return {{a.view, b.view}, {{0, 1}}, settings}; }
-
-  BakedBody a, b;
-  Settings settings{.engine = EngineKind::regions};
-};
 
 /// @param angle  that it has gone round
 Pose touching_ball(double radius_m, double angle) {
