@@ -2,17 +2,13 @@
 #include "host_bake/decompose/face_tree.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 namespace palpate::bake {
 namespace {
 
-constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr FaceBox kEmpty{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
-
 FaceBox box_of(const NormalMesh& mesh, const std::uint32_t* first, std::size_t count) {
-  FaceBox box = kEmpty;
+  FaceBox box = FaceBox::empty();
   for (std::size_t i = 0; i < count; ++i)
     for (const std::uint32_t v : mesh.faces[first[i]]) box.add(mesh.points[v]);
   return box;

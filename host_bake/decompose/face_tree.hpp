@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "host_bake/mesh/mesh.hpp"
@@ -13,6 +14,12 @@ namespace palpate::bake {
 
 struct FaceBox {
   std::array<float, 3> low{}, high{};
+
+  /// Around nothing yet.
+  static constexpr FaceBox empty() {
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    return {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  }
 
   [[nodiscard]] bool meets(const FaceBox& other) const {
     for (std::size_t i = 0; i < 3; ++i)

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "host_bake/decompose/flat_cover.hpp"
 #include "host_bake/decompose/geometry.hpp"
@@ -14,7 +13,6 @@ namespace {
 
 constexpr std::size_t kSmallHull = 24;  // facets up to which trying all of them beats walking
 constexpr int kCuts = 8;  // that mostly leave nothing of a triangle that does not enter
-constexpr float kNowhere = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
@@ -35,7 +33,7 @@ void ShrunkHull::find_planes(const GrowingHull& hull) {
   corners_.clear();
   neighbours_.clear();
   plane_of_slot_.assign(slots.size(), 0);
-  box_ = {{kNowhere, kNowhere, kNowhere}, {-kNowhere, -kNowhere, -kNowhere}};
+  box_ = FaceBox::empty();
   for (std::size_t s = 0; s < slots.size(); ++s) {
     if (!slots[s].alive) continue;
     plane_of_slot_[s] = static_cast<std::uint32_t>(planes_.size());

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "host_bake/mesh/crossings.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/box_intersection_d.h>
 #include <CGAL/intersections.h>
 #include <tbb/concurrent_vector.h>
@@ -10,18 +9,18 @@
 #include <array>
 #include <atomic>
 
+#include "host_bake/mesh/cgal_point.hpp"
+
 namespace palpate::bake {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Kernel = CgalKernel;
 using Point3 = Kernel::Point_3;
 using BoxedFace = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::uint32_t>;
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Leaves the search from inside its callback.
 struct TooManyMeetings {};
-
-Point3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
 
 /// Two triangles as six points, the shared ones first and in the same places of both.
 struct Couple {

@@ -4,17 +4,18 @@
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 
+#include "host_bake/mesh/cgal_point.hpp"
+
 namespace palpate::bake {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Kernel = CgalKernel;
 using Point3 = Kernel::Point_3;
 using Vector = Kernel::Vector_3;
 using Triangles = std::vector<Kernel::Triangle_3>;
@@ -26,8 +27,6 @@ constexpr double kNearlyClosed = 0.1;  ///< vector area over area
 /// closed components, a sheet's small bulge for open ones. The bunny has 0.4.
 constexpr double kLeastClosedFullness = 1e-9;
 constexpr double kLeastOpenFullness = 0.01;
-
-Point3 cgal_point(const Point& p) { return {p[0], p[1], p[2]}; }
 
 /// Sums over one component.
 struct Shape {
@@ -45,7 +44,7 @@ struct Shape {
 std::vector<Shape> shapes_of(const Mesh& mesh, const Components& components) {
   std::vector<Shape> shapes(components.closed.size());
   CGAL::Bbox_3 box;
-  for (const Point& p : mesh.points) box += cgal_point(p).bbox();
+  for (const Point& p : mesh.points) box += to_cgal(p).bbox();
   const double extent = std::max({box.x_span(), box.y_span(), box.z_span()});
   const auto local = [&box, extent](const Point& p) {
     return Vector((p[0] - box.xmin()) / extent, (p[1] - box.ymin()) / extent,
@@ -102,9 +101,8 @@ class Nesting {
       const std::uint32_t component = components.of_face[f];
       if (component == kNoComponent || !components.closed[component]) continue;
       const Face& v = mesh.faces[f];
-      const Kernel::Triangle_3 triangle(cgal_point(mesh.points[v[0]]),
-                                        cgal_point(mesh.points[v[1]]),
-                                        cgal_point(mesh.points[v[2]]));
+      const Kernel::Triangle_3 triangle(to_cgal(mesh.points[v[0]]), to_cgal(mesh.points[v[1]]),
+                                        to_cgal(mesh.points[v[2]]));
       if (!seen[component]) first[component] = triangle.vertex(0);
       seen[component] = 1;
       // A face seen edge-on by a vertical ray is never crossed, so those without area may stay out.

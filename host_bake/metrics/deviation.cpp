@@ -8,6 +8,7 @@
 #include <span>
 
 #include "host_bake/base/parallel.hpp"
+#include "host_bake/base/round_up.hpp"
 #include "host_bake/metrics/vector.hpp"
 
 namespace palpate::bake {
@@ -246,11 +247,8 @@ class PatchSearch {
   double settled_ = 0;        // largest squared bound of cells that are good
 };
 
-float root_rounded_up(double squared) {
-  const double wanted = std::sqrt(squared) * (1 + kAllRoundings) + kAllRoundings;
-  const auto f = static_cast<float>(wanted);
-  return static_cast<double>(f) < wanted ? std::nextafter(f, std::numeric_limits<float>::infinity())
-                                         : f;
+float bound_of_root(double squared) {
+  return rounded_up(std::sqrt(squared) * (1 + kAllRoundings) + kAllRoundings);
 }
 
 }  // namespace
@@ -270,7 +268,7 @@ std::vector<float> surface_deviations(const NearestSurface& original, const Norm
           {vec(level.points[face[0]]), vec(level.points[face[1]]), vec(level.points[face[2]])},
           {nearest[face[0]], nearest[face[1]], nearest[face[2]]});
     }
-    deviations[i] = root_rounded_up(search.run());
+    deviations[i] = bound_of_root(search.run());
   });
   return deviations;
 }

@@ -2,32 +2,20 @@
 #include "host_bake/metrics/hausdorff.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <span>
 
 #include "host_bake/base/parallel.hpp"
+#include "host_bake/base/round_up.hpp"
 #include "host_bake/metrics/hull_side.hpp"
 
 namespace palpate::bake {
-namespace {
-
-float rounded_up(double v) {
-  if (v <= 0) return 0;
-  const double wanted = v * (1 + 1e-12);  // the rounding of the distance itself
-  const auto f = static_cast<float>(wanted);
-  return static_cast<double>(f) < wanted ? std::nextafter(f, std::numeric_limits<float>::infinity())
-                                         : f;
-}
-
-}  // namespace
 
 float largest_distance(std::span<const PointF> points, std::span<const PointF> hull_points,
                        std::span<const std::array<std::uint32_t, 3>> faces, int dimension) {
   const HullSide side(hull_points, faces, dimension);
   double largest = 0;
   for (const PointF& p : points) largest = std::max(largest, side.distance(p));
-  return rounded_up(largest);
+  return rounded_up(largest * (1 + 1e-12));  // the rounding of the distance itself
 }
 
 std::vector<float> hausdorff_bounds(const Hierarchy& tree) {

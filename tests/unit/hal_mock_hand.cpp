@@ -12,17 +12,14 @@
 #include <vector>
 
 #include "hal/rotation.hpp"
+#include "tests/support/poses.hpp"
 
 namespace palpate::hal::mock {
 namespace {
 
-constexpr double kDt_s = 5e-4;
+using palpate::test::at_x;
 
-Pose at_x(double x_m) {
-  Pose pose;
-  pose.position_m.x = x_m;
-  return pose;
-}
+constexpr double kDt_s = 5e-4;
 
 /// Times at which a signal about zero rises through it, by linear interpolation.
 std::vector<double> rising_zeros(const std::vector<double>& signal, double dt_s) {

@@ -8,30 +8,27 @@
 #include <vector>
 
 #include "hal/rotation.hpp"
+#include "tests/support/poses.hpp"
 
 namespace palpate::hal::mock {
 namespace {
 
-Pose along_x(double x_m) {
-  Pose pose;
-  pose.position_m.x = x_m;
-  return pose;
-}
+using palpate::test::at_x;
 
 TEST(Path, empty_script_stays_at_rest) {
-  const Path path({}, along_x(0.25));
+  const Path path({}, at_x(0.25));
   EXPECT_EQ(path.at(0).pose.position_m.x, 0.25);
   EXPECT_EQ(path.at(1e6).pose.position_m.x, 0.25);
   EXPECT_EQ(norm(path.at(3).twist.linear_m_per_s), 0.0);
 }
 
 TEST(Path, one_waypoint_stays_there) {
-  const std::array<Waypoint, 1> script{{{0, along_x(0.5)}}};
-  EXPECT_EQ(Path(script, along_x(0)).at(17).pose.position_m.x, 0.5);
+  const std::array<Waypoint, 1> script{{{0, at_x(0.5)}}};
+  EXPECT_EQ(Path(script, at_x(0)).at(17).pose.position_m.x, 0.5);
 }
 
 TEST(Path, between_waypoints_moves_at_constant_velocity) {
-  const std::array<Waypoint, 3> script{{{0, along_x(0)}, {1, along_x(0.2)}, {3, along_x(0)}}};
+  const std::array<Waypoint, 3> script{{{0, at_x(0)}, {1, at_x(0.2)}, {3, at_x(0)}}};
   const Path path(script, {});
   EXPECT_NEAR(path.at(0.5).pose.position_m.x, 0.1, 1e-15);
   EXPECT_NEAR(path.at(0.5).twist.linear_m_per_s.x, 0.2, 1e-15);
@@ -40,7 +37,7 @@ TEST(Path, between_waypoints_moves_at_constant_velocity) {
 }
 
 TEST(Path, after_its_end_starts_again) {
-  const std::array<Waypoint, 2> script{{{0, along_x(0)}, {2, along_x(1)}}};
+  const std::array<Waypoint, 2> script{{{0, at_x(0)}, {2, at_x(1)}}};
   const Path path(script, {});
   EXPECT_NEAR(path.at(2.5).pose.position_m.x, path.at(0.5).pose.position_m.x, 1e-15);
   EXPECT_NEAR(path.at(2000.5).pose.position_m.x, 0.25, 1e-9);
@@ -65,7 +62,7 @@ TEST(Path, bad_scripts_are_told_apart_from_good_ones) {
   EXPECT_FALSE(Path::is_valid(Script{{0.5, {}}}));
   EXPECT_FALSE(Path::is_valid(Script{{0, {}}, {1, {}}, {1, {}}}));
   EXPECT_FALSE(Path::is_valid(Script{{0, {}}, {kNan, {}}}));
-  EXPECT_FALSE(Path::is_valid(Script{{0, along_x(kNan)}}));
+  EXPECT_FALSE(Path::is_valid(Script{{0, at_x(kNan)}}));
 }
 
 }  // namespace

@@ -5,22 +5,18 @@
 
 #include <limits>
 
+#include "tests/support/poses.hpp"
 #include "tests/support/virtual_loop.hpp"
 
 namespace palpate::realtime {
 namespace {
 
+using palpate::test::at_z;
 using test::QueryOf;
 using test::wall;
 
 constexpr double kSteadyPeriod_s = 1e-3;
 constexpr double kWall_N_per_m = 600;
-
-Pose at_height(double z_m) {
-  Pose pose;
-  pose.position_m.z = z_m;
-  return pose;
-}
 
 double force_N(SteadyQuery& query, const Pose& pose) {
   TickResult out;
@@ -31,10 +27,10 @@ double force_N(SteadyQuery& query, const Pose& pose) {
 TEST(SteadyQuery, leaves_a_force_alone_that_follows_its_model) {
   QueryOf contacts(wall(kWall_N_per_m));
   SteadyQuery query(contacts, {10, 1}, kWall_N_per_m, kSteadyPeriod_s);
-  for (int i = 0; i < 400; ++i) static_cast<void>(force_N(query, at_height(-0.001)));
+  for (int i = 0; i < 400; ++i) static_cast<void>(force_N(query, at_z(-0.001)));
   // 6 N/s of the rate's 10 would be too slow for this, at 1 m/s.
-  EXPECT_NEAR(force_N(query, at_height(-0.002)), 1.2, 1e-12);
-  EXPECT_NEAR(force_N(query, at_height(-0.0005)), 0.3, 1e-12);
+  EXPECT_NEAR(force_N(query, at_z(-0.002)), 1.2, 1e-12);
+  EXPECT_NEAR(force_N(query, at_z(-0.0005)), 0.3, 1e-12);
   EXPECT_EQ(norm(query.off().force_N), 0);
 }
 
@@ -43,30 +39,30 @@ TEST(SteadyQuery, brings_a_jump_at_its_rate) {
   QueryOf contacts(
       [&](const Pose& p, const Budget& b, TickResult& out) { return wall(stiffness)(p, b, out); });
   SteadyQuery query(contacts, {50, 1}, kWall_N_per_m, kSteadyPeriod_s);
-  for (int i = 0; i < 100; ++i) static_cast<void>(force_N(query, at_height(-0.001)));
+  for (int i = 0; i < 100; ++i) static_cast<void>(force_N(query, at_z(-0.001)));
   stiffness = 900;  // 0.3 N more without a motion
   for (int i = 1; i <= 6; ++i) {
-    EXPECT_NEAR(force_N(query, at_height(-0.001)), 0.6 + 0.05 * i, 1e-12);
+    EXPECT_NEAR(force_N(query, at_z(-0.001)), 0.6 + 0.05 * i, 1e-12);
     EXPECT_NEAR(query.off().force_N.z, -0.3 + 0.05 * i, 1e-12);
   }
-  EXPECT_NEAR(force_N(query, at_height(-0.001)), 0.9, 1e-12);
+  EXPECT_NEAR(force_N(query, at_z(-0.001)), 0.9, 1e-12);
 }
 
 TEST(SteadyQuery, forgets_a_contact_that_is_gone_at_its_rate) {
   QueryOf contacts(wall(kWall_N_per_m));
   SteadyQuery query(contacts, {100, 1}, kWall_N_per_m, kSteadyPeriod_s);
-  for (int i = 0; i < 50; ++i) static_cast<void>(force_N(query, at_height(-0.001)));
+  for (int i = 0; i < 50; ++i) static_cast<void>(force_N(query, at_z(-0.001)));
   // Its model, a spring, pulls beyond the wall; contacts of the new place have none.
-  EXPECT_NEAR(force_N(query, at_height(0.0005)), -0.2, 1e-12);
-  EXPECT_NEAR(force_N(query, at_height(0.0005)), -0.1, 1e-12);
-  EXPECT_NEAR(force_N(query, at_height(0.0005)), 0, 1e-12);
+  EXPECT_NEAR(force_N(query, at_z(0.0005)), -0.2, 1e-12);
+  EXPECT_NEAR(force_N(query, at_z(0.0005)), -0.1, 1e-12);
+  EXPECT_NEAR(force_N(query, at_z(0.0005)), 0, 1e-12);
 }
 
 TEST(SteadyQuery, widens_the_certificate_by_what_it_holds_back) {
   QueryOf contacts(wall(kWall_N_per_m));
   SteadyQuery query(contacts, {100, 1}, kWall_N_per_m, kSteadyPeriod_s);
   TickResult out;
-  ASSERT_EQ(query.tick(at_height(-0.001), {}, out), Status::ok);
+  ASSERT_EQ(query.tick(at_z(-0.001), {}, out), Status::ok);
   EXPECT_NEAR(out.wrench.force_N.z, 0.1, 1e-12);
   EXPECT_NEAR(out.certificate.force_bound_N, 0.5, 1e-12);
 }
@@ -91,7 +87,7 @@ struct UncertainWall {
 
 /// Along the wall at 0.1 m/s, a millimetre deep.
 Pose slid(int tick) {
-  Pose pose = at_height(-0.001);
+  Pose pose = at_z(-0.001);
   pose.position_m.x = 1e-4 * tick;
   return pose;
 }
@@ -186,10 +182,10 @@ TEST(SteadyQuery, lets_go_at_its_rate_where_certainly_nothing_touches) {
 TEST(SteadyQuery, follows_the_way_into_a_doubtful_surface) {
   UncertainWall wall;
   wall.error_m = kDoubtful_m;
-  for (int i = 0; i < 100; ++i) static_cast<void>(force_N(wall.query, at_height(-0.001)));
+  for (int i = 0; i < 100; ++i) static_cast<void>(force_N(wall.query, at_z(-0.001)));
   double before_N = 0.6;
   for (int i = 1; i <= 20; ++i) {
-    const double now_N = force_N(wall.query, at_height(-0.001 - 1e-4 * i));
+    const double now_N = force_N(wall.query, at_z(-0.001 - 1e-4 * i));
     EXPECT_GE(now_N - before_N, 0.6 * 0.06 - 1e-12);
     before_N = now_N;
   }
@@ -214,8 +210,8 @@ TEST(SteadyQuery, of_infinite_rates_is_not_there) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   QueryOf contacts(wall(kWall_N_per_m));
   SteadyQuery query(contacts, {kInfinity, kInfinity}, kWall_N_per_m, kSteadyPeriod_s);
-  EXPECT_EQ(force_N(query, at_height(-0.001)), 0.6);
-  EXPECT_EQ(force_N(query, at_height(0.001)), 0);
+  EXPECT_EQ(force_N(query, at_z(-0.001)), 0.6);
+  EXPECT_EQ(force_N(query, at_z(0.001)), 0);
 }
 
 TEST(SteadyQuery, hands_an_error_on) {

@@ -6,19 +6,15 @@
 #include <cstring>
 #include <vector>
 
+#include "tests/support/poses.hpp"
 #include "tests/support/virtual_loop.hpp"
 
 namespace palpate::realtime {
 namespace {
 
+using palpate::test::at_z;
 using test::VirtualLoop;
 using test::wall;
-
-Pose at_z(double z_m) {
-  Pose pose;
-  pose.position_m.z = z_m;
-  return pose;
-}
 
 /// Presses 5 mm into the wall and stays there.
 hal::mock::HandParameters pressing_hand() {

@@ -7,6 +7,7 @@
 #include "tools/realtime/budget_clock.hpp"
 
 namespace palpate::realtime {
+
 void ContactServer::run(const ServerSettings& settings, hal::Clock& clock,
                         const std::atomic<bool>& stop) noexcept {
   const std::uint64_t period_ns = nanoseconds(1 / settings.rate_Hz);
