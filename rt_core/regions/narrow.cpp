@@ -32,14 +32,12 @@ constexpr std::uint32_t kStepsPerLook = 4;
 constexpr double kManyTicksAfterJump = 5;
 constexpr std::uint32_t kFewAfterJump = 2;
 constexpr double kUnitsToFollow = 16;
-/// Where images can be looked up in, a survey takes the place of following, from so many ticks on
-/// and with this share of one. What a first search takes is told by those of before, or by a few,
-/// which end when they have taken too much together.
-constexpr double kTicksToSurvey = 1.4;
-constexpr std::uint32_t kProbes = 3;
+/// Where images can be looked up in, a survey takes the place of following, with this share of the
+/// tick. So many searches tell whether one is due, or that they take more than their part of what
+/// is left.
 constexpr double kMostSurveyed = 0.97;
+constexpr std::uint32_t kProbes = 3;
 constexpr double kFewestToSurvey = 64;
-constexpr double kMostProbed = 1e6;  ///< units a region; no search takes as many
 /// Then following takes this share of what is left, the larger where it brings witnesses nearer
 /// for the same work than searches do: by half as much, for it also keeps them there.
 constexpr double kMostFollow = 0.85;
@@ -73,7 +71,7 @@ class Narrowing {
   void run() noexcept {
     if (work_.demand.limited && work_.count > 0) {
       if (work_.swept) {
-        survey_where_far_to_go();
+        search_or_survey();
       } else {
         track(work_);
         scout_where_lost();
@@ -140,14 +138,12 @@ class Narrowing {
   void narrow_widest(bool may_lag) noexcept {
     MinQueue<std::uint32_t, MoreUrgent> queue(work_.memory.queue, MoreUrgent{work_.active()});
     double open_m = 0;
-    felt_ = crossing_ = wide_ = 0;
     if (begun_ != image::kNone) work_.active()[begun_].urgency = kFarthest;
     for (std::uint32_t i = 0; i < work_.count; ++i) {
       open_m += work_.width_m(work_.active()[i]);
-      count_in(work_.active()[i]);
       if (work_.active()[i].width > kClosed) queue.push(i);
     }
-    leave_for_report();
+    count_all();
     const bool at_once = work_.demand.limited && pursuit_.searches >= kFewSearches &&
                          units_to_close() < kAtOnce * affordable();
     for (std::uint32_t step = 0; !queue.empty() && open_m > work_.demand.tolerance_m; ++step) {
@@ -156,11 +152,7 @@ class Narrowing {
       if (may_lag && step % kStepsPerLook == 0 && lags()) return;
       queue.pop();
       open_m -= work_.width_m(item);
-      const std::uint64_t known = felt_ + crossing_;
-      count_out(item);
-      narrow_one(index, at_once);
-      count_in(item);
-      if (felt_ + crossing_ > known) leave_for_report();
+      count_anew(item, [&] { narrow_one(index, at_once); });
       open_m += work_.width_m(item);
       if (work_.truncated) return;
       if (item.width > kClosed) queue.push(index);
@@ -197,39 +189,63 @@ class Narrowing {
     work_.widen_all();
   }
 
-  /// After a jump, where the searches of all that may be near would take several times what the
-  /// tick has: what is near is looked up, so that a tick in contact feels some of everywhere. The
+  /// After a jump all that may be near is searched, as long as the tick seems to do for the rest of
+  /// it. From then on it is looked up, so that a tick in contact feels some of everywhere, and the
   /// nearest are what the rest of the tick is for.
-  void survey_where_far_to_go() noexcept {
-    if (!work_.pace.go_on()) return;
-    const double units = work_.units_of_tick();
-    const double each = units / work_.count;
-    if (units < kFewestToSurvey || each > kMostProbed ||
-        !can_look(work_.frame_of(work_.active()[0])))
+  void search_or_survey() noexcept {
+    if (!work_.pace.go_on() || work_.units_of_tick() < kFewestToSurvey ||
+        !can_look(work_.frame_of(work_.active()[0]))) {
       return;
-    const double ticks = pursuit_.searches >= kFewSearches ? pursuit_.search_units / each
-                                                           : probed(kTicksToSurvey * each) / each;
-    if (!work_.pace.go_on() || ticks < kTicksToSurvey) return;
+    }
+    count_all();
+    if (search_while_it_lasts() || !work_.pace.go_on()) return;
+    work_.truncated = false;
     lags_ = work_.followed = true;
     static_cast<void>(survey(work_, kMostSurveyed));
   }
 
-  /// Work units that a search takes, of a few that lie apart; infinite where they take
-  /// more than `most`.
-  double probed(double most) noexcept {
-    const std::uint32_t probes = kProbes < work_.count ? kProbes : work_.count;
+  /// A few searches tell little of what the others take: it is asked again every few of them.
+  /// @return whether all are done
+  bool search_while_it_lasts() noexcept {
+    const std::uint32_t count = work_.count;
+    const std::uint32_t stride = even_stride(count);
     const std::uint64_t before = work_.pace.used();
-    const auto limit = static_cast<std::uint64_t>(most * probes);
-    work_.pace.limit(limit);
-    for (std::uint32_t k = 0; k < probes; ++k) {
-      Active& item = work_.active()[k * (work_.count / probes)];
-      close(work_, item, share_of(item));
-    }
+    std::uint32_t done = 0;
+    std::uint32_t at = 0;
+    const auto search_next = [&] {
+      Active& item = work_.active()[at];
+      count_anew(item, [&] { close(work_, item, share_of(item)); });
+      at = (at + stride) % count;
+      ++done;
+    };
+    work_.limit_to(static_cast<double>(kProbes) / count);
+    while (done < count && done < kProbes && work_.pace.go_on()) search_next();
+    bool lasts = work_.pace.go_on();
     work_.pace.no_limit();
-    work_.truncated = !work_.pace.go_on();
-    const std::uint64_t used = work_.pace.used() - before;
-    return used < limit ? static_cast<double>(used) / probes
-                        : std::numeric_limits<double>::infinity();
+    while (lasts && done < count && work_.pace.go_on()) {
+      search_next();
+      if (done % kStepsPerLook != 0) continue;
+      const double each = static_cast<double>(work_.pace.used() - before) / done;
+      lasts = each * (count - done) < work_.units_left();
+    }
+    return done == count;
+  }
+
+  /// From region to region, so that each has its turn once, and those that follow each other lie
+  /// apart: near the golden section of their number, and with no factor in common with it.
+  static std::uint32_t even_stride(std::uint32_t count) noexcept {
+    constexpr double kGolden = 0.6180339887498949;
+    auto stride = static_cast<std::uint32_t>(kGolden * count) | 1u;
+    while (common_factor(stride, count) > 1) stride += 2;
+    return stride;
+  }
+  static std::uint32_t common_factor(std::uint32_t a, std::uint32_t b) noexcept {
+    while (b > 0) {
+      const std::uint32_t rest = a % b;
+      a = b;
+      b = rest;
+    }
+    return a;
   }
 
   /// Regions of which a part not looked at may cross the other body by now.
@@ -239,6 +255,19 @@ class Narrowing {
     }
   }
 
+  void count_all() noexcept {
+    felt_ = crossing_ = wide_ = 0;
+    for (const Active& item : work_.active()) count_in(item);
+    leave_for_report();
+  }
+  /// A region that a function changes.
+  void count_anew(const Active& item, auto change) noexcept {
+    const std::uint64_t known = felt_ + crossing_;
+    count_out(item);
+    change();
+    count_in(item);
+    if (felt_ + crossing_ > known) leave_for_report();
+  }
   void count_in(const Active& item) noexcept {
     felt_ += counts_as_felt(item) ? 1u : 0u;
     wide_ += counts_as_wide(item) ? 1u : 0u;

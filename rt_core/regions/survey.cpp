@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/survey.hpp"
 
+#include "rt_core/regions/close.hpp"
 #include "rt_core/regions/look_into.hpp"
 #include "rt_core/regions/pair_batch.hpp"
 
@@ -23,8 +24,10 @@ constexpr std::uint32_t kMostRounds = 64;  ///< each passes over all active regi
 constexpr std::uint32_t kTellingRounds = 12;
 constexpr std::uint32_t kMostRepeats = 8;
 /// Of the survey's units: once the first rounds have been seen, the rest does more in climbs and
-/// searches from there than in more looks.
+/// searches from there than in more looks. And where what is felt would be searched in less than so
+/// many times what the tick has left, all of that does: steps take half as much again.
 constexpr double kMostForRepeats = 0.8;
+constexpr double kInSteps = 1.5;
 
 class Survey {
  public:
@@ -35,21 +38,23 @@ class Survey {
         batch_(work, Take{this}),
         began_ns_(work.meter.elapsed_ns()),
         began_at_(work.pace.used()) {
-    const double telling = work.count < kTelling ? work.count : kTelling;
-    const double units = share * work.units_of_tick();
+    std::uint32_t open = 0;
+    for (const Active& item : work.active()) open += is_open(item) ? 1u : 0u;
+    const double telling = open < kTelling ? open : kTelling;
+    const double units = share * work.units_left();
     const double each = units / (telling * (1 + kBeside) * kUnitsPerLook);
     looks_ = static_cast<std::uint32_t>(each < kFewestLooks  ? kFewestLooks
                                         : each < kMostSpread ? each
                                                              : kMostSpread);
     beside_ = static_cast<std::uint32_t>(kBeside * looks_);
-    const std::uint32_t rounds = work.count / kRegionsPerRound + 1;
+    const std::uint32_t rounds = open / kRegionsPerRound + 1;
     rounds_ = rounds < kMostRounds ? rounds : kMostRounds;
   }
 
   bool run() noexcept {
     for (std::uint32_t i = 0; i < work_.count; ++i) {
       const Active& item = work_.active()[i];
-      round_of_[i] = round_of(item);
+      round_of_[i] = is_open(item) ? round_of(item) : image::kNone;
       if (!work_.is_felt(item) || !work_.is_present(item)) continue;
       ++felt_;
       crossing_ += work_.is_crossing(item) ? 1u : 0u;
@@ -70,6 +75,8 @@ class Survey {
     }
   };
 
+  static bool is_open(const Active& item) noexcept { return item.width > kClosed; }
+
   /// @return how many rounds have been seen
   std::uint32_t begin() noexcept {
     const std::uint32_t telling = rounds_ < kTellingRounds ? rounds_ : kTellingRounds;
@@ -79,10 +86,20 @@ class Survey {
     for (; i < repeated + rounds_ - telling; ++i) {
       const std::uint32_t round = i < repeated ? i % telling : i - repeated + telling;
       const bool repeats = i >= telling && i < repeated;
+      if (repeats && felt_can_be_searched()) break;
       if (!has_units_for(round, repeats ? kMostForRepeats * share_ : share_)) break;
       see(round);
     }
     return i < telling ? i : i < repeated ? telling : i - repeated + telling;
+  }
+
+  bool felt_can_be_searched() const noexcept {
+    const Pursuit& pursuit = work_.memory.pursuit;
+    std::uint32_t open = 0;
+    for (const Active& item : work_.active()) {
+      open += is_open(item) && work_.is_felt(item) ? 1u : 0u;
+    }
+    return pursuit.searches > 0 && kInSteps * open * pursuit.search_units < affordable();
   }
 
   /// Of as many rounds as there are now, by the surveys before.
@@ -124,7 +141,12 @@ class Survey {
 
   void see(std::uint32_t round) noexcept {
     spread_ = true;
-    for_each(round, [this](std::uint32_t i) { look_into(work_, i, looks_, batch_); });
+    const std::uint32_t first = looks_ / 2;
+    for_each(round, [this, first](std::uint32_t i) { look_into(work_, i, first, batch_); });
+    // Half of them tell where there is something to find.
+    for_each(round, [this, first](std::uint32_t i) {
+      if (may_climb(work_, work_.active()[i])) look_into(work_, i, looks_ - first, batch_);
+    });
     spread_ = false;
     for_each(round, [this](std::uint32_t i) { look_beside_witness(i); });
   }

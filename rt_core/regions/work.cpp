@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/work.hpp"
 
+#include "rt_core/regions/close.hpp"
+
 namespace palpate::regions {
 namespace {
 
@@ -15,7 +17,8 @@ constexpr float kNarrow = 0.2f;
 constexpr float kNotFelt = 1e-3f;
 /// After a jump nearly everything is open, and what is deepest decides the force: a contact counts
 /// with the square of its depth (force/penalty.hpp), which of a shallow one may still grow. Of what
-/// no contact is known of, few have one. A climb is cheap.
+/// no contact is known of, few have one, and the fewer the farther what has been seen of it. A climb
+/// is cheap.
 constexpr float kShallow = 0.1f;
 constexpr float kNoContact = 0.1f;
 constexpr float kNotClimbed = 5;
@@ -44,9 +47,12 @@ void Work::leave_for_report(std::uint64_t felt, std::uint64_t crossing) noexcept
 }
 
 float Work::weight_after_jump(const Active& item) const noexcept {
-  if (!is_felt(item)) return kNoContact;
+  const Witness& witness = witness_of(item);
+  const float climb = may_climb(*this, item) ? kNotClimbed : 1;
+  if (!witness.known()) return kNoContact;
+  if (!is_felt(item)) return climb * kNoContact * delta_of(item) / witness.distance;
   const float depth = 1 - upper_of(item) / delta_of(item);
-  return (item.climbed ? 1 : kNotClimbed) * (kShallow + depth * depth);
+  return climb * (kShallow + depth * depth);
 }
 
 float Work::worth(const Active& item) const noexcept {
