@@ -19,6 +19,7 @@ namespace {
 constexpr std::uint64_t kLeastUnits = 64;
 /// Intervals are closed at once where the searches of all would take less than so many times what
 /// the tick has left: steps see more of what a tick has no time for, and take half as much again.
+/// After a jump they are, too: what is near has been looked up by then.
 constexpr double kAtOnce = 1.5;
 /// Under a budget, searches do not keep up where those of the intervals wider than a share of delta
 /// would take so many ticks; asked when so many searches have told what they take, and again every
@@ -144,8 +145,9 @@ class Narrowing {
       if (work_.active()[i].width > kClosed) queue.push(i);
     }
     count_all();
-    const bool at_once = work_.demand.limited && pursuit_.searches >= kFewSearches &&
-                         units_to_close() < kAtOnce * affordable();
+    const bool nearly_done =
+        pursuit_.searches >= kFewSearches && units_to_close() < kAtOnce * affordable();
+    const bool at_once = work_.demand.limited && (work_.swept || nearly_done);
     for (std::uint32_t step = 0; !queue.empty() && open_m > work_.demand.tolerance_m; ++step) {
       const std::uint32_t index = queue.top();
       Active& item = work_.active()[index];
