@@ -116,11 +116,12 @@ struct Demand {
 /// budget ends goes on in the next tick, before all others (unfinished.hpp). A tolerance is shared
 /// so that what costs more to search may stay open wider. A budget that is far too small for the
 /// searches goes to following the witnesses instead where that brings them nearer (follow.hpp).
-/// After a jump the deepest contacts go first, and a survey comes before the searches where the
-/// budget is small for them (survey.hpp). Whatever ends it, every interval holds its distance, and
-/// every witness nearer than delta is a contact, or as many of them as there is time to report
-/// (crowd.hpp). Where triangles cross, the pieces that they belong to give the depth and the curve
-/// in which they do the direction (crossing.hpp); for that, at most half of a budget is left.
+/// After a jump regions are searched as long as the budget seems to do for all; from then on a
+/// survey comes first (survey.hpp), and then the deepest contacts. Whatever ends it, every interval
+/// holds its distance, and every witness nearer than delta is a contact, or as many of them as
+/// there is time to report (crowd.hpp). Where triangles cross, the pieces that they belong to give
+/// the depth and the curve in which they do the direction (crossing.hpp); for that, at most half of
+/// a budget is left.
 ///
 /// A contact's pieces are those of level 0 that hold the witnesses. Stages and counts go to the
 /// tally. Cost: the budget, plus O(regions), plus one witness of each near region.

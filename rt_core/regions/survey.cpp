@@ -24,10 +24,10 @@ constexpr std::uint32_t kMostRounds = 64;  ///< each passes over all active regi
 constexpr std::uint32_t kTellingRounds = 12;
 constexpr std::uint32_t kMostRepeats = 8;
 /// Of the survey's units: once the first rounds have been seen, the rest does more in climbs and
-/// searches from there than in more looks. And where what is felt would be searched in less than so
-/// many times what the tick has left, all of that does: steps take half as much again.
+/// searches from there than in more looks; and all of it does where that is enough for searching
+/// what is felt, and half as much again.
 constexpr double kMostForRepeats = 0.8;
-constexpr double kInSteps = 1.5;
+constexpr double kEnough = 1.5;
 
 class Survey {
  public:
@@ -82,13 +82,18 @@ class Survey {
     const std::uint32_t telling = rounds_ < kTellingRounds ? rounds_ : kTellingRounds;
     const std::uint32_t repeated = kMostRepeats * telling;
     see(0);
+    const std::uint32_t all = repeated + rounds_ - telling;
     std::uint32_t i = 1;
-    for (; i < repeated + rounds_ - telling; ++i) {
-      const std::uint32_t round = i < repeated ? i % telling : i - repeated + telling;
+    while (i < all) {
       const bool repeats = i >= telling && i < repeated;
-      if (repeats && felt_can_be_searched()) break;
+      if (repeats && felt_can_be_searched()) {
+        i = repeated;
+        continue;
+      }
+      const std::uint32_t round = i < repeated ? i % telling : i - repeated + telling;
       if (!has_units_for(round, repeats ? kMostForRepeats * share_ : share_)) break;
       see(round);
+      ++i;
     }
     return i < telling ? i : i < repeated ? telling : i - repeated + telling;
   }
@@ -99,7 +104,7 @@ class Survey {
     for (const Active& item : work_.active()) {
       open += is_open(item) && work_.is_felt(item) ? 1u : 0u;
     }
-    return pursuit.searches > 0 && kInSteps * open * pursuit.search_units < affordable();
+    return pursuit.searches > 0 && kEnough * open * pursuit.search_units < affordable();
   }
 
   /// Of as many rounds as there are now, by the surveys before.

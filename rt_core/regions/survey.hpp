@@ -6,21 +6,22 @@
 
 namespace palpate::regions {
 
-/// Gives active regions a witness by looks (look.hpp): the nearest of some spread over the region,
-/// then of three quarters as many beside that. Rounds of some sixteen regions each follow the order
-/// in which they are spread over the surface (image::Region::rank), so that whatever ends it has
-/// seen evenly of everywhere: a force is told by few contacts from all sides (crowd.hpp), and told
-/// wrong by many from one. The first twelve are repeated up to eight times, with other places,
-/// before others begin. A round begins if there seem to be units and time for all of it. A region
-/// has four to fourteen looks in a round, as many as there are units for if 64 are to be seen.
-/// In ticks that are none after a jump, goes on where the last survey ended (Pursuit::surveyed),
-/// round by round.
+/// Gives active regions that are open a witness by looks (look.hpp): the nearest of some spread
+/// over the region, half of them only where the others have met something within two delta, then
+/// of three quarters as many beside that. Rounds of some sixteen regions each follow the order in
+/// which they are spread over the surface (image::Region::rank), so that whatever ends it has seen
+/// evenly of everywhere: a force is told by few contacts from all sides (crowd.hpp), and told wrong
+/// by many from one. Before others begin the first twelve are repeated up to eight times, with
+/// other places, until what is left does for searching what is felt. A round begins if there seem
+/// to be units and time for all of it. A region has four to fourteen looks in a round, as many as
+/// there are units for if 64 are to be seen. In ticks that are none after a jump, goes on where the
+/// last survey ended (Pursuit::surveyed), round by round.
 ///
 /// Proves nothing; witnesses are at the present poses as before. Where an image cannot be looked up
 /// in, nothing. Takes the queue of the query's memory as scratch.
 /// @param share  of the tick's units and time, within what the budget leaves
 /// @return false where no round was begun
-/// Cost: the share, plus three passes over all active regions a round, of at most 148.
+/// Cost: the share, plus five passes over all active regions a round, of at most 148.
 bool survey(Work& work, double share) noexcept;
 
 }  // namespace palpate::regions

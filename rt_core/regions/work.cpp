@@ -17,8 +17,8 @@ constexpr float kNarrow = 0.2f;
 constexpr float kNotFelt = 1e-3f;
 /// After a jump nearly everything is open, and what is deepest decides the force: a contact counts
 /// with the square of its depth (force/penalty.hpp), which of a shallow one may still grow. Of what
-/// no contact is known of, few have one, and the fewer the farther what has been seen of it. A climb
-/// is cheap.
+/// no contact is known of, few have one, and the fewer the farther what has been seen of it. A
+/// climb is cheap.
 constexpr float kShallow = 0.1f;
 constexpr float kNoContact = 0.1f;
 constexpr float kNotClimbed = 5;
