@@ -201,7 +201,6 @@ class Narrowing {
     }
     count_all();
     if (search_while_it_lasts() || !work_.pace.go_on()) return;
-    work_.truncated = false;
     lags_ = work_.followed = true;
     static_cast<void>(survey(work_, kMostSurveyed));
   }
@@ -224,6 +223,7 @@ class Narrowing {
     while (done < count && done < kProbes && work_.pace.go_on()) search_next();
     bool lasts = work_.pace.go_on();
     work_.pace.no_limit();
+    work_.truncated = !work_.pace.go_on();
     while (lasts && done < count && work_.pace.go_on()) {
       search_next();
       if (done % kStepsPerLook != 0) continue;
