@@ -24,8 +24,6 @@ constexpr float kLonger = 1.2f;
 /// Where what a search keeps does not do for this share of a tick, so many keep nothing.
 constexpr double kLeastLasting = 0.5;
 constexpr std::uint32_t kBareSearches = 8;
-/// Neighbours of a witness farther than this many delta are not looked at.
-constexpr float kClimbReach = 2;
 
 /// Reach::margin of a search whose interval may stay open by the tolerance.
 /// @param away  how far the region will go from its witness, which may open the interval as well
@@ -175,10 +173,6 @@ void seek(Work& work, Active& item, float width) noexcept {
 
 }  // namespace
 
-bool may_climb(const Work& work, const Active& item) noexcept {
-  return !item.climbed && work.witness_of(item).nearer_than(kClimbReach * work.delta_of(item));
-}
-
 void climb_from_witness(Work& work, Active& item, Beside* out_beside) noexcept {
   climb(*work.memory.kernels, work.frame_of(item), *work.memory.search, work.pace,
         work.witness_of(item), item.way, out_beside);
@@ -192,12 +186,12 @@ void close(Work& work, Active& item, float tolerance) noexcept {
 }
 
 void take_up(Work& work, Active& item, float tolerance) noexcept {
-  if (may_climb(work, item)) climb_from_witness(work, item);
+  if (work.may_climb(item)) climb_from_witness(work, item);
   seek(work, item, next_width(work, item, tolerance));
 }
 
 void step(Work& work, Active& item, float tolerance, bool at_once) noexcept {
-  if (may_climb(work, item)) {
+  if (work.may_climb(item)) {
     climb_from_witness(work, item);
     return;
   }

@@ -6,9 +6,6 @@
 
 namespace palpate::regions {
 
-/// It has not climbed in this tick, and its witness is near enough to be worth it.
-[[nodiscard]] bool may_climb(const Work& work, const Active& item) noexcept;
-
 /// Moves the witness to the nearest of its neighbours. Cost and out_beside: climb().
 void climb_from_witness(Work& work, Active& item, Beside* out_beside = nullptr) noexcept;
 

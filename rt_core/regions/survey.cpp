@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/survey.hpp"
 
-#include "rt_core/regions/close.hpp"
 #include "rt_core/regions/look_into.hpp"
 #include "rt_core/regions/pair_batch.hpp"
 
@@ -60,7 +59,7 @@ class Survey {
       crossing_ += work_.is_crossing(item) ? 1u : 0u;
     }
     const std::uint32_t before = work_.swept ? 0 : rounds_seen();
-    const std::uint32_t seen = work_.swept ? begin() : go_on(before);
+    const std::uint32_t seen = work_.swept ? begin() : go_on(before, rounds_);
     if (seen == before) return false;
     work_.memory.pursuit.surveyed = static_cast<double>(seen) / rounds_;
     work_.widen_all();
@@ -80,22 +79,15 @@ class Survey {
   /// @return how many rounds have been seen
   std::uint32_t begin() noexcept {
     const std::uint32_t telling = rounds_ < kTellingRounds ? rounds_ : kTellingRounds;
-    const std::uint32_t repeated = kMostRepeats * telling;
     see(0);
-    const std::uint32_t all = repeated + rounds_ - telling;
-    std::uint32_t i = 1;
-    while (i < all) {
-      const bool repeats = i >= telling && i < repeated;
-      if (repeats && felt_can_be_searched()) {
-        i = repeated;
-        continue;
-      }
-      const std::uint32_t round = i < repeated ? i % telling : i - repeated + telling;
-      if (!has_units_for(round, repeats ? kMostForRepeats * share_ : share_)) break;
-      see(round);
-      ++i;
+    const std::uint32_t seen = go_on(1, telling);
+    if (seen < telling) return seen;
+    for (std::uint32_t i = telling; i < kMostRepeats * telling; ++i) {
+      if (felt_can_be_searched()) break;
+      if (!has_units_for(i % telling, kMostForRepeats * share_)) return seen;
+      see(i % telling);
     }
-    return i < telling ? i : i < repeated ? telling : i - repeated + telling;
+    return go_on(seen, rounds_);
   }
 
   bool felt_can_be_searched() const noexcept {
@@ -115,8 +107,8 @@ class Survey {
     return round;
   }
 
-  std::uint32_t go_on(std::uint32_t round) noexcept {
-    while (round < rounds_ && has_units_for(round, share_)) see(round++);
+  std::uint32_t go_on(std::uint32_t round, std::uint32_t end) noexcept {
+    while (round < end && has_units_for(round, share_)) see(round++);
     return round;
   }
 
@@ -150,7 +142,7 @@ class Survey {
     for_each(round, [this, first](std::uint32_t i) { look_into(work_, i, first, batch_); });
     // Half of them tell where there is something to find.
     for_each(round, [this, first](std::uint32_t i) {
-      if (may_climb(work_, work_.active()[i])) look_into(work_, i, looks_ - first, batch_);
+      if (work_.may_climb(work_.active()[i])) look_into(work_, i, looks_ - first, batch_);
     });
     spread_ = false;
     for_each(round, [this](std::uint32_t i) { look_beside_witness(i); });

@@ -44,7 +44,7 @@ class Tracking {
  private:
   /// Those that do are in the queue, and no others.
   bool slides(const Active& item) const noexcept {
-    return item.width > kClosed && may_climb(work_, item) && work_.is_present(item) &&
+    return item.width > kClosed && work_.may_climb(item) && work_.is_present(item) &&
            !(margin_of(work_.pair_of(item)) > 0);
   }
 

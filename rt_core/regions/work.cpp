@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/work.hpp"
 
-#include "rt_core/regions/close.hpp"
-
 namespace palpate::regions {
 namespace {
 
@@ -22,6 +20,8 @@ constexpr float kNotFelt = 1e-3f;
 constexpr float kShallow = 0.1f;
 constexpr float kNoContact = 0.1f;
 constexpr float kNotClimbed = 5;
+/// Neighbours of a witness farther than this many delta are not looked at.
+constexpr float kClimbReach = 2;
 
 }  // namespace
 
@@ -46,9 +46,13 @@ void Work::leave_for_report(std::uint64_t felt, std::uint64_t crossing) noexcept
   meter.set_aside(static_cast<std::uint64_t>(listing));
 }
 
+bool Work::may_climb(const Active& item) const noexcept {
+  return !item.climbed && witness_of(item).nearer_than(kClimbReach * delta_of(item));
+}
+
 float Work::weight_after_jump(const Active& item) const noexcept {
   const Witness& witness = witness_of(item);
-  const float climb = may_climb(*this, item) ? kNotClimbed : 1;
+  const float climb = may_climb(item) ? kNotClimbed : 1;
   if (!witness.known()) return kNoContact;
   if (!is_felt(item)) return climb * kNoContact * delta_of(item) / witness.distance;
   const float depth = 1 - upper_of(item) / delta_of(item);

@@ -50,6 +50,8 @@ struct Work {
   [[nodiscard]] bool is_crossing(const Active& item) const noexcept {
     return witness_of(item).crosses();
   }
+  /// It has not climbed in this tick, and its witness is within two delta: worth it.
+  [[nodiscard]] bool may_climb(const Active& item) const noexcept;
   /// In this tick, of what a search of it meets: it would not last.
   [[nodiscard]] bool keeps_nothing(const Active& item) const noexcept {
     return !demand.limited && state_of(item).bare_searches > 0;
