@@ -2,32 +2,74 @@
 #include "rt_core/regions/look.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/regions/simd.hpp"
 
 namespace palpate::regions {
 namespace {
 
-/// Of `cells` along an axis; what lies outside is in the outermost one.
-std::uint32_t cell_at(float along, float per_length, std::uint32_t cells) noexcept {
-  const float at = along * per_length;
-  const auto last = static_cast<float>(cells - 1);
-  return at > 0 ? static_cast<std::uint32_t>(at < last ? at : last) : 0;
+/// Places side by side, and the cells of the grid that they lie in.
+struct Cells {
+  float at[3][kMostLooks] = {};
+  std::int32_t cell[3][kMostLooks];
+};
+static_assert(kMostLooks % kLanes == 0);
+
+void put(Vec3f place, std::uint32_t i, Cells& cells) noexcept {
+  cells.at[0][i] = place.x;
+  cells.at[1][i] = place.y;
+  cells.at[2][i] = place.z;
 }
 
-/// Where the triangle near a point is kept.
-const std::uint32_t* place_of(const ImageView& image, Vec3f p) noexcept {
+/// From a's image coordinates to b's.
+void bring_over(const Transform& m, Cells& cells) noexcept {
+  const float* r = m.rotation;
+  for (std::uint32_t i = 0; i < kMostLooks; i += kLanes) {
+    const Vectors p{load(&cells.at[0][i]), load(&cells.at[1][i]), load(&cells.at[2][i])};
+    store(m.scale * (r[0] * p.x + r[1] * p.y + r[2] * p.z) + m.translation[0], &cells.at[0][i]);
+    store(m.scale * (r[3] * p.x + r[4] * p.y + r[5] * p.z) + m.translation[1], &cells.at[1][i]);
+    store(m.scale * (r[6] * p.x + r[7] * p.y + r[8] * p.z) + m.translation[2], &cells.at[2][i]);
+  }
+}
+
+/// What lies outside of the grid is in the outermost cells.
+void find_cells(const image::ProximityGrid& grid, Cells& cells) noexcept {
+  const float per_length = 1 / grid.cell;
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    const Floats last = all(static_cast<float>(grid.bricks[axis] * image::kBrickEdge - 1));
+    for (std::uint32_t i = 0; i < kMostLooks; i += kLanes) {
+      const Floats at = (load(&cells.at[axis][i]) - grid.origin[axis]) * per_length;
+      store(truncated(least(most(at, Floats{}), last)), &cells.cell[axis][i]);
+    }
+  }
+}
+
+/// In a box of so many places along x and y.
+std::uint32_t number_of(const std::uint32_t (&at)[3], std::uint32_t x, std::uint32_t y) noexcept {
+  return (at[2] * y + at[1]) * x + at[0];
+}
+
+/// Where the brick of a place is kept.
+const std::uint32_t* brick_of(const ImageView& image, const Cells& cells, std::uint32_t i,
+                              std::uint8_t& in_brick) noexcept {
   using image::kBrickEdge;
   const image::ProximityGrid& grid = *image.proximity_grid;
-  const float per_length = 1 / grid.cell;
-  const std::uint32_t x = cell_at(p.x - grid.origin[0], per_length, grid.bricks[0] * kBrickEdge);
-  const std::uint32_t y = cell_at(p.y - grid.origin[1], per_length, grid.bricks[1] * kBrickEdge);
-  const std::uint32_t z = cell_at(p.z - grid.origin[2], per_length, grid.bricks[2] * kBrickEdge);
-  const std::uint32_t brick =
-      (z / kBrickEdge * grid.bricks[1] + y / kBrickEdge) * grid.bricks[0] + x / kBrickEdge;
-  const std::uint32_t* const kept = &image.proximity_bricks[brick];
-  if ((*kept & image::kCoarseBrick) != 0) return kept;
-  const std::uint32_t in_brick =
-      (z % kBrickEdge * kBrickEdge + y % kBrickEdge) * kBrickEdge + x % kBrickEdge;
-  return &image.proximity_cells[std::size_t{*kept} * image::kBrickCells + in_brick];
+  std::uint32_t brick[3];
+  std::uint32_t within[3];
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    const auto cell = static_cast<std::uint32_t>(cells.cell[axis][i]);
+    brick[axis] = cell / kBrickEdge;
+    within[axis] = cell % kBrickEdge;
+  }
+  static_assert(image::kBrickCells <= 256);
+  in_brick = static_cast<std::uint8_t>(number_of(within, kBrickEdge, kBrickEdge));
+  return &image.proximity_bricks[number_of(brick, grid.bricks[0], grid.bricks[1])];
+}
+
+/// Where the triangle near it is kept.
+const std::uint32_t* place_of(const ImageView& image, const std::uint32_t* brick,
+                              std::uint32_t in_brick) noexcept {
+  if ((*brick & image::kCoarseBrick) != 0) return brick;
+  return &image.proximity_cells[std::size_t{*brick} * image::kBrickCells + in_brick];
 }
 
 /// The run is passed through in steps of its golden section, so that any number of looks in a row
@@ -38,52 +80,77 @@ std::uint32_t triangle_of(const image::RegionRun& run, std::uint32_t look) noexc
   return run.first + static_cast<std::uint32_t>((part & 0xffffffffu) * run.count >> 32);
 }
 
+void ask_for_triangles(const PairFrame& frame, Looks& looks) noexcept {
+  for (std::uint32_t i = 0; i < looks.count; ++i) {
+    __builtin_prefetch(&frame.a->region_triangles[looks.pairs[i].a]);
+  }
+}
+
+void find_bricks(const PairFrame& frame, Looks& looks) noexcept {
+  Cells cells;
+  for (std::uint32_t i = 0; i < looks.count; ++i) {
+    put(centre_of(frame.a->region_triangles[looks.pairs[i].a]), i, cells);
+  }
+  bring_over(frame.a_to_b, cells);
+  find_cells(*frame.b->proximity_grid, cells);
+  for (std::uint32_t i = 0; i < looks.count; ++i) {
+    looks.at[i] = brick_of(*frame.b, cells, i, looks.in_brick[i]);
+    __builtin_prefetch(looks.at[i]);
+  }
+}
+
+void find_places(const PairFrame& frame, Looks& looks) noexcept {
+  for (std::uint32_t i = 0; i < looks.count; ++i) {
+    looks.at[i] = place_of(*frame.b, looks.at[i], looks.in_brick[i]);
+    __builtin_prefetch(looks.at[i]);
+  }
+}
+
+void name_pairs(const PairFrame& frame, Looks& looks) noexcept {
+  for (std::uint32_t i = 0; i < looks.count; ++i) {
+    looks.pairs[i].b = *looks.at[i] & ~image::kCoarseBrick;
+    __builtin_prefetch(&frame.b->region_triangles[looks.pairs[i].b]);
+  }
+}
+
 }  // namespace
+
+const LookStep look_steps[kLookSteps] = {ask_for_triangles, find_bricks, find_places, name_pairs};
+
+void look_from(const PairFrame& frame, Looks& looks) noexcept {
+  PALPATE_ASSERT(looks.count <= kMostLooks && can_look(frame));
+  for (const LookStep step : look_steps) step(frame, looks);
+}
 
 std::uint32_t near_place(const PairFrame& frame, Vec3f place) noexcept {
   PALPATE_ASSERT(can_look(frame));
-  return *place_of(*frame.b, place) & ~image::kCoarseBrick;
+  Cells cells;
+  put(place, 0, cells);
+  find_cells(*frame.b->proximity_grid, cells);
+  std::uint8_t in_brick = 0;
+  const std::uint32_t* const brick = brick_of(*frame.b, cells, 0, in_brick);
+  return *place_of(*frame.b, brick, in_brick) & ~image::kCoarseBrick;
 }
 
-/// Each pass asks for what the next one reads.
-void look_from(const PairFrame& frame, std::uint32_t count, Witness (&pairs)[kMostLooks]) noexcept {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    __builtin_prefetch(&frame.a->region_triangles[pairs[i].a]);
-  }
-  const std::uint32_t* places[kMostLooks];
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Vec3f centre = centre_of(frame.a->region_triangles[pairs[i].a]);
-    places[i] = place_of(*frame.b, at_place(frame.a_to_b, centre));
-    __builtin_prefetch(places[i]);
-  }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    pairs[i].b = *places[i] & ~image::kCoarseBrick;
-    __builtin_prefetch(&frame.b->region_triangles[pairs[i].b]);
-  }
-}
-
-void look(const PairFrame& frame, std::uint32_t region, std::uint32_t from, std::uint32_t count,
-          Witness (&out)[kMostLooks]) noexcept {
-  PALPATE_ASSERT(count <= kMostLooks && can_look(frame));
+void look_over(const PairFrame& frame, std::uint32_t region, std::uint32_t from,
+               std::uint32_t count, Looks& out) noexcept {
+  PALPATE_ASSERT(count <= kMostLooks);
   const image::RegionRun& run = frame.a->region_runs[region];
-  for (std::uint32_t i = 0; i < count; ++i) out[i] = {triangle_of(run, from + i), 0, 0};
-  look_from(frame, count, out);
+  for (std::uint32_t i = 0; i < count; ++i) out.pairs[i] = {triangle_of(run, from + i), 0, 0};
+  out.count = count;
 }
 
-std::uint32_t look_beside(const PairFrame& frame, std::uint32_t region, std::uint32_t triangle,
-                          std::uint32_t count, Witness (&out)[kMostLooks]) noexcept {
-  PALPATE_ASSERT(count <= kMostLooks && can_look(frame));
+void look_beside(const PairFrame& frame, std::uint32_t region, std::uint32_t triangle,
+                 std::uint32_t count, Looks& out) noexcept {
+  PALPATE_ASSERT(count <= kMostLooks);
   const image::RegionRun& run = frame.a->region_runs[region];
   const std::uint32_t wanted = count < run.count ? count : run.count - 1;
   const std::uint32_t last = run.first + run.count - 1 - wanted;
   const std::uint32_t centred = triangle > wanted / 2 ? triangle - wanted / 2 : 0;
   std::uint32_t next = centred < run.first ? run.first : centred < last ? centred : last;
-  std::uint32_t found = 0;
-  for (; found < wanted; ++next) {
-    if (next != triangle) out[found++] = {next, 0, 0};
+  for (out.count = 0; out.count < wanted; ++next) {
+    if (next != triangle) out.pairs[out.count++] = {next, 0, 0};
   }
-  look_from(frame, found, out);
-  return found;
 }
 
 }  // namespace palpate::regions

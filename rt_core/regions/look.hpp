@@ -39,30 +39,43 @@ inline Vec3f at_place(const Transform& m, Vec3f p) noexcept {
 /// Precondition: can_look(frame). O(1)
 std::uint32_t near_place(const PairFrame& frame, Vec3f place) noexcept;
 
-/// Looks from triangles of a, which are given.
-/// @param count  at most kMostLooks
-/// @param pairs  `a` is read, `b` is written
-/// Precondition: can_look(frame). O(count)
-void look_from(const PairFrame& frame, std::uint32_t count, Witness (&pairs)[kMostLooks]) noexcept;
-
-/// Triangles of a region, spread over it, each with the triangle of b that b's proximity grid names
-/// where its centre lies (closest point transforms: Mauch 2000). Their distances are not measured.
+/// Triangles of a that are looked from, each with the triangle of b that b's proximity grid names
+/// where its centre lies (closest point transforms: Mauch 2000). Distances are not measured.
 ///
-/// A look takes three reads of memory and no arithmetic to speak of, where a dive into both trees
-/// takes seven work units; and it finds what is near as the grid's cells are fine.
+/// A look takes four reads of memory, each from where the one before has said, and no arithmetic to
+/// speak of, where a dive into both trees takes seven work units; and it finds what is near as the
+/// grid's cells are fine.
+struct Looks {
+  std::uint32_t count = 0;
+  Witness pairs[kMostLooks];            ///< `b` once all steps are done; distances are 0
+  const std::uint32_t* at[kMostLooks];  ///< what the next step reads
+  std::uint8_t in_brick[kMostLooks];
+};
+
+/// Each step asks for what the next one reads: where others' steps come in between, no one waits.
+/// Precondition: can_look(frame). O(count)
+using LookStep = void (*)(const PairFrame& frame, Looks& looks) noexcept;
+inline constexpr std::uint32_t kLookSteps = 4;
+extern const LookStep look_steps[kLookSteps];
+
+/// All steps, one after the other.
+void look_from(const PairFrame& frame, Looks& looks) noexcept;
+
+/// Looks from triangles that are spread over a region.
 /// @param from   number of the first look; those that follow each other lie apart
 /// @param count  at most kMostLooks
-/// @param out    their distances are 0
+/// @param out    before any step
 /// Precondition: can_look(frame). O(count)
-void look(const PairFrame& frame, std::uint32_t region, std::uint32_t from, std::uint32_t count,
-          Witness (&out)[kMostLooks]) noexcept;
+void look_over(const PairFrame& frame, std::uint32_t region, std::uint32_t from,
+               std::uint32_t count, Looks& out) noexcept;
 
-/// The same from the triangles on both sides of one of the region's: neighbours in a run are
-/// neighbours on the surface.
+/// Looks from the triangles on both sides of one of the region's: neighbours in a run are
+/// neighbours on the surface. Fewer than `count` where the region has no more.
 /// @param triangle  of a, not looked from itself
 /// @param count     at most kMostLooks
-/// @return how many there are: fewer than `count` where the region has no more
-std::uint32_t look_beside(const PairFrame& frame, std::uint32_t region, std::uint32_t triangle,
-                          std::uint32_t count, Witness (&out)[kMostLooks]) noexcept;
+/// @param out       before any step
+/// Precondition: can_look(frame). O(count)
+void look_beside(const PairFrame& frame, std::uint32_t region, std::uint32_t triangle,
+                 std::uint32_t count, Looks& out) noexcept;
 
 }  // namespace palpate::regions

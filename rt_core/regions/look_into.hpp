@@ -7,18 +7,30 @@
 
 namespace palpate::regions {
 
-/// Where the last ones of the region ended; a unit for kLooksPerUnit of them.
-/// @param index  of the active region, whose frame can_look()
+/// Looks that go on where the last ones of the region ended.
+/// @param item   whose frame can_look()
 /// @param count  at most kMostLooks
+inline void look_on(const Work& work, const Active& item, std::uint32_t count,
+                    Looks& out) noexcept {
+  look_over(work.frame_of(item), item.region, work.kept_of(item).seeds.dives, count, out);
+}
+
+/// After their steps; a unit for kLooksPerUnit of them.
 /// @param batch  a PairBatch
+void add_looks(Work& work, std::uint32_t index, const Looks& looks, auto& batch) noexcept {
+  work.pace.charge(looks.count / kLooksPerUnit);
+  for (std::uint32_t k = 0; k < looks.count; ++k) batch.add(index, looks.pairs[k]);
+}
+
+/// A region's next looks, all at once.
+/// @param index  of the active region, whose frame can_look()
 void look_into(Work& work, std::uint32_t index, std::uint32_t count, auto& batch) noexcept {
   const Active& item = work.active()[index];
-  Seeds& seeds = work.kept_of(item).seeds;
-  Witness found[kMostLooks];
-  look(work.frame_of(item), item.region, seeds.dives, count, found);
-  seeds.dives += count;
-  work.pace.charge(count / kLooksPerUnit);
-  for (std::uint32_t k = 0; k < count; ++k) batch.add(index, found[k]);
+  Looks looks;
+  look_on(work, item, count, looks);
+  look_from(work.frame_of(item), looks);
+  work.kept_of(item).seeds.dives += count;
+  add_looks(work, index, looks, batch);
 }
 
 }  // namespace palpate::regions

@@ -62,13 +62,12 @@ class Scout {
   Witness look_everywhere() noexcept {
     const auto regions = static_cast<std::uint32_t>(frame_.a->region_runs.size());
     const std::uint32_t count = regions < kMostLooks ? regions : kMostLooks;
-    Witness pairs[kMostLooks];
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const image::RegionRun& run = frame_.a->region_runs[i * (regions / count)];
-      pairs[i] = {run.first + run.count / 2, 0, 0};
+    Looks looks;
+    while (looks.count < count) {
+      const image::RegionRun& run = frame_.a->region_runs[looks.count * (regions / count)];
+      looks.pairs[looks.count++] = {run.first + run.count / 2, 0, 0};
     }
-    look_from(frame_, count, pairs);
-    return nearest_of(count, pairs);
+    return nearest_of(looks);
   }
 
   void visit(std::uint32_t node, Witness& found) noexcept {
@@ -77,9 +76,9 @@ class Scout {
       push_below(node);
       return;
     }
-    Witness pairs[kMostLooks];
-    look(frame_, region, 0, kMostLooks, pairs);
-    found = nearest_of(kMostLooks, pairs);
+    Looks looks;
+    look_over(frame_, region, 0, kMostLooks, looks);
+    found = nearest_of(looks);
   }
 
   void push_below(std::uint32_t index) noexcept {
@@ -97,8 +96,11 @@ class Scout {
     }
   }
 
-  /// Of those that have been looked up, where it is nearer than the limit.
-  Witness nearest_of(std::uint32_t count, const Witness (&pairs)[kMostLooks]) noexcept {
+  /// Of what is looked up, where it is nearer than the limit.
+  Witness nearest_of(Looks& looks) noexcept {
+    look_from(frame_, looks);
+    const Witness(&pairs)[kMostLooks] = looks.pairs;
+    const std::uint32_t count = looks.count;
     pace_.charge(count / kLooksPerUnit);
     for (std::uint32_t i = 0; i < count; ++i) {
       scratch_.batch_a[i] = pairs[i].a;

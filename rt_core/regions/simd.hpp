@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lanes of floats, as wide as the translation unit's target allows. Private to the kernels.
+// Lanes of floats, as wide as the translation unit's target allows. Private to source files.
 //
 // GCC's and Clang's vector types instead of a library: every operation is IEEE, lane by lane, in
 // the order in which it is written, so that 4, 8 and 16 lanes give the same bits, and one lane of
@@ -77,6 +77,9 @@ PALPATE_LANES Floats magnitude(Floats v) noexcept {
   return reinterpret_cast<Floats>(reinterpret_cast<Ints>(v) & 0x7fffffff);
 }
 
+/// Towards zero; of what an int holds.
+PALPATE_LANES Ints truncated(Floats v) noexcept { return __builtin_convertvector(v, Ints); }
+
 /// 1 where the mask is set.
 PALPATE_LANES Ints ones(Ints mask) noexcept { return -mask; }
 
@@ -108,6 +111,7 @@ PALPATE_LANES Floats all(float v) noexcept { return v; }
 PALPATE_LANES Ints all(std::int32_t v) noexcept { return v; }
 PALPATE_LANES Ints counting() noexcept { return 0; }
 PALPATE_LANES Floats magnitude(Floats v) noexcept { return __builtin_fabsf(v); }
+PALPATE_LANES Ints truncated(Floats v) noexcept { return static_cast<Ints>(v); }
 PALPATE_LANES Ints ones(Ints mask) noexcept { return mask != 0 ? 1 : 0; }
 PALPATE_LANES std::uint32_t bits(Ints mask) noexcept { return mask != 0 ? 1 : 0; }
 

@@ -17,7 +17,7 @@ static_assert(kMostSpread <= kMostLooks);
 constexpr double kBeside = 0.75;
 constexpr double kUnitsPerLook = 1.0 / kLooksPerUnit + static_cast<double>(kBatchUnits) / kBatch;
 constexpr std::uint32_t kRegionsPerRound = 16;
-constexpr std::uint32_t kMostRounds = 64;  ///< each passes over all active regions
+constexpr std::uint32_t kMostRounds = 64;
 /// So many rounds are repeated, each with other places, before the next ones begin: a force is told
 /// better by some two hundred regions that are known well than by twice as many that are not.
 constexpr std::uint32_t kTellingRounds = 12;
@@ -33,7 +33,7 @@ class Survey {
   Survey(Work& work, double share) noexcept
       : work_(work),
         share_(share),
-        round_of_(work.memory.queue),
+        in_order_(work.memory.queue),
         batch_(work, Take{this}),
         began_ns_(work.meter.elapsed_ns()),
         began_at_(work.pace.used()) {
@@ -51,13 +51,12 @@ class Survey {
   }
 
   bool run() noexcept {
-    for (std::uint32_t i = 0; i < work_.count; ++i) {
-      const Active& item = work_.active()[i];
-      round_of_[i] = is_open(item) ? round_of(item) : image::kNone;
+    for (const Active& item : work_.active()) {
       if (!work_.is_felt(item) || !work_.is_present(item)) continue;
       ++felt_;
       crossing_ += work_.is_crossing(item) ? 1u : 0u;
     }
+    sort_by_round();
     const std::uint32_t before = work_.swept ? 0 : rounds_seen();
     const std::uint32_t seen = work_.swept ? begin() : go_on(before, rounds_);
     if (seen == before) return false;
@@ -112,6 +111,28 @@ class Survey {
     return round;
   }
 
+  /// Open regions, those of a round one after the other and in the order of active ones.
+  void sort_by_round() noexcept {
+    for (const Active& item : work_.active()) {
+      if (is_open(item)) ++end_of_[round_of(item)];
+    }
+    std::uint32_t first = 0;
+    for (std::uint32_t round = 0; round < rounds_; ++round) {
+      const std::uint32_t count = end_of_[round];
+      end_of_[round] = first;
+      first += count;
+    }
+    for (std::uint32_t i = 0; i < work_.count; ++i) {
+      const Active& item = work_.active()[i];
+      if (is_open(item)) in_order_[end_of_[round_of(item)]++] = i;
+    }
+  }
+
+  std::span<const std::uint32_t> regions_of(std::uint32_t round) const noexcept {
+    const std::uint32_t first = round > 0 ? end_of_[round - 1] : 0;
+    return in_order_.subspan(first, end_of_[round] - first);
+  }
+
   std::uint32_t round_of(const Active& item) const noexcept {
     const auto regions = work_.pair_of(item).image_a->regions;
     return static_cast<std::uint32_t>(std::uint64_t{regions[item.region].rank} * rounds_ /
@@ -121,8 +142,7 @@ class Survey {
   /// A round that is begun is ended, as far as that can be told: half of one is of one side.
   bool has_units_for(std::uint32_t round, double share) noexcept {
     if (!work_.pace.go_on()) return false;
-    std::uint32_t regions = 0;
-    for (std::uint32_t i = 0; i < work_.count; ++i) regions += round_of_[i] == round ? 1u : 0u;
+    const auto regions = static_cast<double>(regions_of(round).size());
     const auto used = static_cast<double>(work_.pace.used());
     return used + regions * (looks_ + beside_) * kUnitsPerLook <= share * (used + affordable());
   }
@@ -137,33 +157,47 @@ class Survey {
   }
 
   void see(std::uint32_t round) noexcept {
-    spread_ = true;
     const std::uint32_t first = looks_ / 2;
-    for_each(round, [this, first](std::uint32_t i) { look_into(work_, i, first, batch_); });
+    const std::uint32_t rest = looks_ - first;
+    spread_ = true;
+    see_each(round, [&](const Active& item, Looks& out) { look_on(work_, item, first, out); });
     // Half of them tell where there is something to find.
-    for_each(round, [this, first](std::uint32_t i) {
-      if (work_.may_climb(work_.active()[i])) look_into(work_, i, looks_ - first, batch_);
+    see_each(round, [&](const Active& item, Looks& out) {
+      if (work_.may_climb(item)) look_on(work_, item, rest, out);
     });
     spread_ = false;
-    for_each(round, [this](std::uint32_t i) { look_beside_witness(i); });
+    see_each(round, [&](const Active& item, Looks& out) {
+      if (!work_.is_felt(item)) return;
+      look_beside(work_.frame_of(item), item.region, work_.witness_of(item).a, beside_, out);
+    });
   }
 
-  /// Calls a function with every active region of a round, and measures what it adds.
-  void for_each(std::uint32_t round, auto visit) noexcept {
-    for (std::uint32_t i = 0; i < work_.count && work_.pace.go_on(); ++i) {
-      if (round_of_[i] == round && can_look(work_.frame_of(work_.active()[i]))) visit(i);
+  /// Looks and measures what every active region of a round chooses to look from. Memory is slow:
+  /// while one region's looks are measured, those of the next ones are on their way.
+  void see_each(std::uint32_t round, auto choose) noexcept {
+    const std::span<const std::uint32_t> regions = regions_of(round);
+    Looks on_their_way[kLookSteps];
+    for (std::size_t k = 0; k < regions.size() + kLookSteps - 1; ++k) {
+      for (std::size_t step = 0; step < kLookSteps && step <= k; ++step) {
+        const std::size_t at = k - step;
+        if (at >= regions.size()) continue;
+        const Active& item = work_.active()[regions[at]];
+        const PairFrame& frame = work_.frame_of(item);
+        Looks& looks = on_their_way[at % kLookSteps];
+        if (step == 0) {
+          looks.count = 0;
+          if (can_look(frame)) choose(item, looks);
+        }
+        look_steps[step](frame, looks);
+      }
+      if (k + 1 < kLookSteps) continue;
+      if (!work_.pace.go_on()) break;
+      const std::size_t seen = k + 1 - kLookSteps;
+      const Looks& looks = on_their_way[seen % kLookSteps];
+      if (spread_) work_.kept_of(work_.active()[regions[seen]]).seeds.dives += looks.count;
+      add_looks(work_, regions[seen], looks, batch_);
     }
     batch_.measure_all();
-  }
-
-  void look_beside_witness(std::uint32_t index) noexcept {
-    const Active& item = work_.active()[index];
-    if (!work_.is_felt(item)) return;
-    Witness found[kMostLooks];
-    const std::uint32_t count =
-        look_beside(work_.frame_of(item), item.region, work_.witness_of(item).a, beside_, found);
-    work_.pace.charge(count / kLooksPerUnit);
-    for (std::uint32_t k = 0; k < count; ++k) batch_.add(index, found[k]);
   }
 
   void take(std::uint32_t index, const Witness& pair) noexcept {
@@ -185,7 +219,8 @@ class Survey {
 
   Work& work_;
   double share_;
-  std::span<std::uint32_t> round_of_;
+  std::span<std::uint32_t> in_order_;  // of active regions, see sort_by_round()
+  std::uint32_t end_of_[kMostRounds] = {};
   PairBatch<Take> batch_;
   std::uint64_t began_ns_;    // since the tick began
   std::uint64_t began_at_;    // in units of the tick

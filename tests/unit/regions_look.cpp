@@ -51,9 +51,10 @@ TEST(RegionLook, What_is_found_is_a_cell_away_at_most) {
   // was looked from; to the centre of that.
   const double most = std::sqrt(3.0) * double(view.proximity_grid->cell) + 2 * longest;
   for (std::uint32_t region = 0; region < view.regions.size(); ++region) {
-    regions::Witness found[regions::kMostLooks];
-    regions::look(frame, region, 3, regions::kMostLooks, found);
-    for (const regions::Witness& pair : found) {
+    regions::Looks looks;
+    regions::look_over(frame, region, 3, regions::kMostLooks, looks);
+    regions::look_from(frame, looks);
+    for (const regions::Witness& pair : looks.pairs) {
       EXPECT_EQ(view.region_triangles[pair.a].region, region);
       EXPECT_LE(
           norm(centre_of(view.region_triangles[pair.a]) - centre_of(view.region_triangles[pair.b])),
@@ -69,10 +70,10 @@ TEST(RegionLook, Looks_in_a_row_are_of_different_triangles) {
     const std::uint32_t triangles = view.region_runs[region].count;
     const std::uint32_t count = std::min(triangles / 2, regions::kMostLooks);
     for (const std::uint32_t from : {0u, 5u, 0xfffffff8u}) {
-      regions::Witness found[regions::kMostLooks];
-      regions::look(frame, region, from, count, found);
+      regions::Looks looks;
+      regions::look_over(frame, region, from, count, looks);
       std::set<std::uint32_t> seen;
-      for (std::uint32_t i = 0; i < count; ++i) seen.insert(found[i].a);
+      for (std::uint32_t i = 0; i < count; ++i) seen.insert(looks.pairs[i].a);
       EXPECT_EQ(seen.size(), count) << "region " << region << " of " << triangles;
     }
   }
@@ -86,14 +87,16 @@ TEST(RegionLook, Looks_beside_a_triangle_are_of_the_others_of_its_region_that_fo
     const std::uint32_t last = run.first + run.count - 1;
     for (const std::uint32_t triangle : {run.first, run.first + run.count / 2, last}) {
       for (const std::uint32_t count : {1u, 6u, regions::kMostLooks}) {
-        regions::Witness found[regions::kMostLooks];
-        const std::uint32_t n = regions::look_beside(frame, region, triangle, count, found);
-        ASSERT_EQ(n, std::min(count, run.count - 1));
-        for (std::uint32_t i = 0; i < n; ++i) {
-          EXPECT_EQ(view.region_triangles[found[i].a].region, region);
-          EXPECT_NE(found[i].a, triangle);
-          EXPECT_LE(std::max(found[i].a, triangle) - std::min(found[i].a, triangle), count);
-          EXPECT_LT(found[i].b, view.region_triangles.size());
+        regions::Looks looks;
+        regions::look_beside(frame, region, triangle, count, looks);
+        regions::look_from(frame, looks);
+        ASSERT_EQ(looks.count, std::min(count, run.count - 1));
+        for (std::uint32_t i = 0; i < looks.count; ++i) {
+          const regions::Witness& pair = looks.pairs[i];
+          EXPECT_EQ(view.region_triangles[pair.a].region, region);
+          EXPECT_NE(pair.a, triangle);
+          EXPECT_LE(std::max(pair.a, triangle) - std::min(pair.a, triangle), count);
+          EXPECT_LT(pair.b, view.region_triangles.size());
         }
       }
     }
@@ -105,9 +108,12 @@ TEST(RegionLook, Far_outside_something_is_named) {
   regions::PairFrame frame = coincident(view);
   for (const float away : {-1e6f, -3.0f, 3.0f, 1e6f, 1e30f}) {
     std::fill_n(frame.a_to_b.translation, 3, away);
-    regions::Witness found[regions::kMostLooks];
-    regions::look(frame, 0, 0, regions::kMostLooks, found);
-    for (const regions::Witness& pair : found) EXPECT_LT(pair.b, view.region_triangles.size());
+    regions::Looks looks;
+    regions::look_over(frame, 0, 0, regions::kMostLooks, looks);
+    regions::look_from(frame, looks);
+    for (const regions::Witness& pair : looks.pairs) {
+      EXPECT_LT(pair.b, view.region_triangles.size());
+    }
   }
 }
 
