@@ -172,8 +172,10 @@ class Survey {
     });
   }
 
-  /// Looks and measures what every active region of a round chooses to look from. Memory is slow:
-  /// while one region's looks are measured, those of the next ones are on their way.
+  /// Looks from the places that are chosen in every region of a round, and measures the pairs.
+  /// Memory is slow: while one region's looks are measured, those of the next ones are on their
+  /// way.
+  /// @param choose  called as choose(item, looks), which come without any
   void see_each(std::uint32_t round, auto choose) noexcept {
     const std::span<const std::uint32_t> regions = regions_of(round);
     Looks on_their_way[kLookSteps];
@@ -219,8 +221,8 @@ class Survey {
 
   Work& work_;
   double share_;
-  std::span<std::uint32_t> in_order_;  // of active regions, see sort_by_round()
-  std::uint32_t end_of_[kMostRounds] = {};
+  std::span<std::uint32_t> in_order_;       // of active regions, see sort_by_round()
+  std::uint32_t end_of_[kMostRounds] = {};  // of each round, in that
   PairBatch<Take> batch_;
   std::uint64_t began_ns_;    // since the tick began
   std::uint64_t began_at_;    // in units of the tick

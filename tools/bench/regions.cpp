@@ -5,6 +5,9 @@
 //                                                scenes: jaws, tips, golf, socket, screw, joint;
 //                                                default: all, with 0.01, 0.02 and 0.05; detail
 //                                                left out before baking, against all of it
+//   bench_regions TICKS paced [KERNELS]          all scenes at 0.02 under budgets of time, longer
+//                                                by as much as FCL takes longer here than .82 ms
+//                                                for one distance of jaws tip to tip
 //   bench_regions TICKS growth [KERNELS]         jaws with more and more triangles at one motion,
 //                                                with tolerances of force, in twenty turns
 //   bench_regions TICKS detail [KERNELS]         jaws with less and less detail left, likewise
@@ -213,11 +216,13 @@ struct Asked {
   double max_deviation = 0;  ///< of both bodies
 };
 
+constexpr double kBudgets_us[] = {50, 100, 250, 500};
+
 /// Forgetting all, and under budgets.
 void print_plans(const SceneName& scene, double delta_rel, Bench& bench,
                  const std::vector<Pose>& poses, const Run& exact) {
   std::vector<Plan> plans{{.cold = true}};
-  for (const double budget_us : {50.0, 100.0, 250.0, 500.0}) {
+  for (const double budget_us : kBudgets_us) {
     plans.push_back({.budget_us = budget_us});
     plans.push_back({.cold = true, .budget_us = budget_us});
   }
@@ -250,6 +255,63 @@ void measure(const SceneName& scene, const Asked& asked, int ticks) {
   Bench less(less_a, less_b, bench.settings());
   print_row(scene.name, delta_rel, {}, run(less, poses, {}), exact);
   print_plans(scene, delta_rel, less, poses, exact);
+}
+
+/// How many times as long as on a machine where FCL takes .82 ms for one distance of jaws tip to
+/// tip it takes here and now; 0 where FCL is not installed.
+class HostPace {
+ public:
+  HostPace()
+      : a_(kTips.a, kDeltaRel, bake::ForEngine::regions),
+        b_(kTips.b, kDeltaRel, bake::ForEngine::regions),
+        poses_(motion(kTips, a_, b_, delta(), kPoses)),
+        peer_(bake::make_model(kTips.a), bake::make_model(kTips.b)) {}
+
+  double now() const {
+    std::vector<double> us;
+    for (const Pose& pose : poses_) us.push_back(peer_us(peer_, pose));
+    return percentile(us, 0.5) / kReference_us;
+  }
+
+ private:
+  static constexpr double kReference_us = 820;
+  static constexpr double kDeltaRel = 0.02;
+  static constexpr int kPoses = 100;
+  static constexpr SceneName kTips = kScenes[1];
+
+  double delta() const {
+    return kDeltaRel * std::min(a_.view.header->radius_m, b_.view.header->radius_m);
+  }
+
+  Body a_, b_;
+  std::vector<Pose> poses_;
+  Peer peer_;
+};
+
+/// A machine's speed changes while this runs: it is asked before each budget.
+void measure_paced(int ticks, const regions::Kernels& kernels) {
+  constexpr double kDeltaRel = 0.02;
+  const HostPace pace;
+  if (!(pace.now() > 0)) {
+    std::fprintf(stderr,
+                 "bench_regions: paced needs FCL: install libfcl-dev and configure again\n");
+    return;
+  }
+  for (const SceneName& scene : kScenes) {
+    const Body a(scene.a, kDeltaRel, bake::ForEngine::regions);
+    const Body b(scene.b, kDeltaRel, bake::ForEngine::regions);
+    const double delta = kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
+    const std::vector<Pose> poses = motion(scene, a, b, delta, ticks);
+    Bench bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
+    bench.use(kernels);
+    const Run exact = run(bench, poses, {});
+    for (const double budget_us : kBudgets_us) {
+      for (const bool cold : {false, true}) {
+        const Plan plan{.cold = cold, .budget_us = budget_us * pace.now()};
+        print_row(scene.name, kDeltaRel, plan, run(bench, poses, plan), exact);
+      }
+    }
+  }
 }
 
 /// How much of a force is the choice of regions: of their width times a share, against a quarter.
@@ -457,7 +519,8 @@ int main(int argc, char** argv) {
   constexpr struct {
     const char* name;
     void (*measure)(int ticks, const palpate::regions::Kernels& kernels);
-  } kOthers[] = {{"growth", measure_growth},
+  } kOthers[] = {{"paced", measure_paced},
+                 {"growth", measure_growth},
                  {"detail", measure_detail},
                  {"divided", measure_divided},
                  {"instructions", measure_instructions}};
