@@ -115,11 +115,11 @@ void name_pairs(const PairFrame& frame, Looks& looks) noexcept {
 
 }  // namespace
 
-const LookStep look_steps[kLookSteps] = {ask_for_triangles, find_bricks, find_places, name_pairs};
+const LookStep kLookSteps[kStepsOfLook] = {ask_for_triangles, find_bricks, find_places, name_pairs};
 
 void look_from(const PairFrame& frame, Looks& looks) noexcept {
   PALPATE_ASSERT(looks.count <= kMostLooks && can_look(frame));
-  for (const LookStep step : look_steps) step(frame, looks);
+  for (const LookStep step : kLookSteps) step(frame, looks);
 }
 
 std::uint32_t near_place(const PairFrame& frame, Vec3f place) noexcept {

@@ -55,8 +55,8 @@ struct Looks {
 /// Each step asks for what the next one reads: where others' steps come in between, no one waits.
 /// Precondition: can_look(frame). O(count)
 using LookStep = void (*)(const PairFrame& frame, Looks& looks) noexcept;
-inline constexpr std::uint32_t kLookSteps = 4;
-extern const LookStep look_steps[kLookSteps];
+inline constexpr std::uint32_t kStepsOfLook = 4;
+extern const LookStep kLookSteps[kStepsOfLook];
 
 /// All steps, one after the other.
 void look_from(const PairFrame& frame, Looks& looks) noexcept;
