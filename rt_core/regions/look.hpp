@@ -52,11 +52,12 @@ struct Looks {
   std::uint8_t in_brick[kMostLooks];
 };
 
+inline constexpr std::uint32_t kLookSteps = 4;
+
 /// Each step asks for what the next one reads: where others' steps come in between, no one waits.
+/// @param step  0 to kLookSteps - 1, in that order
 /// Precondition: can_look(frame). O(count)
-using LookStep = void (*)(const PairFrame& frame, Looks& looks) noexcept;
-inline constexpr std::uint32_t kStepsOfLook = 4;
-extern const LookStep kLookSteps[kStepsOfLook];
+void look_step(const PairFrame& frame, std::uint32_t step, Looks& looks) noexcept;
 
 /// All steps, one after the other.
 void look_from(const PairFrame& frame, Looks& looks) noexcept;

@@ -178,24 +178,25 @@ class Survey {
   /// @param choose  called as choose(item, looks), which come without any
   void see_each(std::uint32_t round, auto choose) noexcept {
     const std::span<const std::uint32_t> regions = regions_of(round);
-    Looks on_their_way[kStepsOfLook];
-    for (std::size_t k = 0; k < regions.size() + kStepsOfLook - 1; ++k) {
-      for (std::size_t step = 0; step < kStepsOfLook && step <= k; ++step) {
-        const std::size_t at = k - step;
-        if (at >= regions.size()) continue;
+    const auto count = static_cast<std::uint32_t>(regions.size());
+    Looks on_their_way[kLookSteps];
+    for (std::uint32_t k = 0; k < count + kLookSteps - 1; ++k) {
+      for (std::uint32_t step = 0; step < kLookSteps && step <= k; ++step) {
+        const std::uint32_t at = k - step;
+        if (at >= count) continue;
         const Active& item = work_.active()[regions[at]];
         const PairFrame& frame = work_.frame_of(item);
-        Looks& looks = on_their_way[at % kStepsOfLook];
+        Looks& looks = on_their_way[at % kLookSteps];
         if (step == 0) {
           looks.count = 0;
           if (can_look(frame)) choose(item, looks);
         }
-        kLookSteps[step](frame, looks);
+        look_step(frame, step, looks);
       }
-      if (k + 1 < kStepsOfLook) continue;
+      if (k + 1 < kLookSteps) continue;
       if (!work_.pace.go_on()) break;
-      const std::size_t seen = k + 1 - kStepsOfLook;
-      const Looks& looks = on_their_way[seen % kStepsOfLook];
+      const std::uint32_t seen = k + 1 - kLookSteps;
+      const Looks& looks = on_their_way[seen % kLookSteps];
       if (spread_) work_.kept_of(work_.active()[regions[seen]]).seeds.dives += looks.count;
       add_looks(work_, regions[seen], looks, batch_);
     }
