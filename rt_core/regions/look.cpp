@@ -21,13 +21,13 @@ void put(Vec3f place, std::uint32_t i, Cells& cells) noexcept {
 }
 
 /// From a's image coordinates to b's.
-void bring_over(const Transform& m, Cells& cells) noexcept {
-  const float* r = m.rotation;
+void bring_over(const Transform& a_to_b, Cells& cells) noexcept {
   for (std::uint32_t i = 0; i < kMostLooks; i += kLanes) {
-    const Vectors p{load(&cells.at[0][i]), load(&cells.at[1][i]), load(&cells.at[2][i])};
-    store(m.scale * (r[0] * p.x + r[1] * p.y + r[2] * p.z) + m.translation[0], &cells.at[0][i]);
-    store(m.scale * (r[3] * p.x + r[4] * p.y + r[5] * p.z) + m.translation[1], &cells.at[1][i]);
-    store(m.scale * (r[6] * p.x + r[7] * p.y + r[8] * p.z) + m.translation[2], &cells.at[2][i]);
+    const Vectors in_a{load(&cells.at[0][i]), load(&cells.at[1][i]), load(&cells.at[2][i])};
+    const Vectors in_b = at_place(a_to_b, in_a);
+    store(in_b.x, &cells.at[0][i]);
+    store(in_b.y, &cells.at[1][i]);
+    store(in_b.z, &cells.at[2][i]);
   }
 }
 

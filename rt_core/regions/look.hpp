@@ -28,7 +28,9 @@ inline Vec3f centre_of(const image::RegionTriangle& t) noexcept {
 }
 
 /// A place in the image coordinates of one body in those of the other.
-inline Vec3f at_place(const Transform& m, Vec3f p) noexcept {
+/// @param p  Vec3f, or several places by lanes (simd.hpp): the same bits
+template <class Place>
+Place at_place(const Transform& m, Place p) noexcept {
   const float* r = m.rotation;
   return {m.scale * (r[0] * p.x + r[1] * p.y + r[2] * p.z) + m.translation[0],
           m.scale * (r[3] * p.x + r[4] * p.y + r[5] * p.z) + m.translation[1],
@@ -49,7 +51,7 @@ struct Looks {
   std::uint32_t count = 0;
   Witness pairs[kMostLooks];            ///< `b` once all steps are done; distances are 0
   const std::uint32_t* at[kMostLooks];  ///< what the next step reads
-  std::uint8_t in_brick[kMostLooks];
+  std::uint8_t in_brick[kMostLooks];    ///< and where in that, if it is a brick
 };
 
 inline constexpr std::uint32_t kLookSteps = 4;

@@ -106,6 +106,7 @@ struct Run {
 
 /// What is asked between two ticks.
 #if defined(PALPATE_BENCH_FCL)
+constexpr bool kHasPeer = true;
 using Peer = FclPair;
 double peer_us(const Peer& peer, const Pose& pose) {
   const std::uint64_t start = cli::processor_ns();
@@ -114,6 +115,7 @@ double peer_us(const Peer& peer, const Pose& pose) {
   return distance >= 0 ? us : 0;
 }
 #else
+constexpr bool kHasPeer = false;
 struct Peer {
   Peer(const bake::Mesh&, const bake::Mesh&) {}
 };
@@ -236,14 +238,27 @@ void print_plans(const SceneName& scene, double delta_rel, Bench& bench,
   }
 }
 
+/// Two bodies and their motion.
+struct Staged {
+  Staged(const SceneName& scene, double delta_rel, int ticks)
+      : a(scene.a, delta_rel, bake::ForEngine::regions),
+        b(scene.b, delta_rel, bake::ForEngine::regions),
+        delta(delta_rel * std::min(a.view.header->radius_m, b.view.header->radius_m)),
+        poses(motion(scene, a, b, delta, ticks)) {}
+
+  Settings settings() const { return {.engine = EngineKind::regions, .delta_m = delta}; }
+
+  Body a, b;
+  double delta;
+  std::vector<Pose> poses;
+};
+
 void measure(const SceneName& scene, const Asked& asked, int ticks) {
   const double delta_rel = asked.delta_rel;
-  const Body a(scene.a, delta_rel, bake::ForEngine::regions);
-  const Body b(scene.b, delta_rel, bake::ForEngine::regions);
-  const double delta = delta_rel * std::min(a.view.header->radius_m, b.view.header->radius_m);
-  const std::vector<Pose> poses = motion(scene, a, b, delta, ticks);
+  const Staged staged(scene, delta_rel, ticks);
+  const std::vector<Pose>& poses = staged.poses;
   const Peer peer(bake::make_model(scene.a), bake::make_model(scene.b));
-  Bench bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
+  Bench bench(staged.a, staged.b, staged.settings());
   const Run exact = run(bench, poses, {.peer = &peer});
   print_row(scene.name, delta_rel, {}, exact, exact);
   if (!(asked.max_deviation > 0)) {
@@ -257,58 +272,30 @@ void measure(const SceneName& scene, const Asked& asked, int ticks) {
   print_plans(scene, delta_rel, less, poses, exact);
 }
 
-/// How many times as long as on a machine where FCL takes .82 ms for one distance of jaws tip to
-/// tip it takes here and now; 0 where FCL is not installed.
-class HostPace {
- public:
-  HostPace()
-      : a_(kTips.a, kDeltaRel, bake::ForEngine::regions),
-        b_(kTips.b, kDeltaRel, bake::ForEngine::regions),
-        poses_(motion(kTips, a_, b_, delta(), kPoses)),
-        peer_(bake::make_model(kTips.a), bake::make_model(kTips.b)) {}
-
-  double now() const {
-    std::vector<double> us;
-    for (const Pose& pose : poses_) us.push_back(peer_us(peer_, pose));
-    return percentile(us, 0.5) / kReference_us;
-  }
-
- private:
-  static constexpr double kReference_us = 820;
-  static constexpr double kDeltaRel = 0.02;
-  static constexpr int kPoses = 100;
-  static constexpr SceneName kTips = kScenes[1];
-
-  double delta() const {
-    return kDeltaRel * std::min(a_.view.header->radius_m, b_.view.header->radius_m);
-  }
-
-  Body a_, b_;
-  std::vector<Pose> poses_;
-  Peer peer_;
-};
+/// How many times as long as .82 ms FCL takes here and now for one distance of jaws tip to tip.
+double host_pace(const Peer& tips, const std::vector<Pose>& poses) {
+  constexpr double kReference_us = 820;
+  std::vector<double> us;
+  for (const Pose& pose : poses) us.push_back(peer_us(tips, pose));
+  return percentile(us, 0.5) / kReference_us;
+}
 
 /// A machine's speed changes while this runs: it is asked before each budget.
 void measure_paced(int ticks, const regions::Kernels& kernels) {
   constexpr double kDeltaRel = 0.02;
-  const HostPace pace;
-  if (!(pace.now() > 0)) {
-    std::fprintf(stderr,
-                 "bench_regions: paced needs FCL: install libfcl-dev and configure again\n");
-    return;
-  }
+  constexpr int kAsked = 100;
+  constexpr SceneName kTips = kScenes[1];
+  const std::vector<Pose> tips_poses = Staged(kTips, kDeltaRel, kAsked).poses;
+  const Peer tips(bake::make_model(kTips.a), bake::make_model(kTips.b));
   for (const SceneName& scene : kScenes) {
-    const Body a(scene.a, kDeltaRel, bake::ForEngine::regions);
-    const Body b(scene.b, kDeltaRel, bake::ForEngine::regions);
-    const double delta = kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
-    const std::vector<Pose> poses = motion(scene, a, b, delta, ticks);
-    Bench bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
+    const Staged staged(scene, kDeltaRel, ticks);
+    Bench bench(staged.a, staged.b, staged.settings());
     bench.use(kernels);
-    const Run exact = run(bench, poses, {});
+    const Run exact = run(bench, staged.poses, {});
     for (const double budget_us : kBudgets_us) {
       for (const bool cold : {false, true}) {
-        const Plan plan{.cold = cold, .budget_us = budget_us * pace.now()};
-        print_row(scene.name, kDeltaRel, plan, run(bench, poses, plan), exact);
+        const Plan plan{.cold = cold, .budget_us = budget_us * host_pace(tips, tips_poses)};
+        print_row(scene.name, kDeltaRel, plan, run(bench, staged.poses, plan), exact);
       }
     }
   }
@@ -464,20 +451,16 @@ const regions::Kernels* kernels_named(const char* name) {
 void measure_instructions(int ticks, const regions::Kernels&) {
   constexpr double kDeltaRel = 0.02;
   constexpr int kTurns = 5;
-  const SceneName& jaws = kScenes[0];
-  const Body a(jaws.a, kDeltaRel, bake::ForEngine::regions);
-  const Body b(jaws.b, kDeltaRel, bake::ForEngine::regions);
-  const double delta = kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
-  const std::vector<Pose> poses = motion(jaws, a, b, delta, ticks);
+  const Staged jaws(kScenes[0], kDeltaRel, ticks);
   const regions::Kernels* tables[regions::kMostKernels] = {};
   const std::uint32_t count = regions::all_kernels(tables);
-  Bench bench(a, b, {.engine = EngineKind::regions, .delta_m = delta});
+  Bench bench(jaws.a, jaws.b, jaws.settings());
   std::optional<Run> exact;
   for (int turn = 0; turn < kTurns; ++turn) {
     for (std::uint32_t i = 0; i < count; ++i) {
       bench.use(*tables[i]);
       for (const bool cold : {false, true}) {
-        const Run found = run(bench, poses, {.cold = cold});
+        const Run found = run(bench, jaws.poses, {.cold = cold});
         if (!exact) exact = found;
         print_row(tables[i]->name, kDeltaRel, {.cold = cold}, found, *exact);
       }
@@ -512,6 +495,11 @@ void measure_asked(const SceneName& scene, const Asked& asked, int ticks) {
 int main(int argc, char** argv) {
   using namespace palpate::bench;
   const int ticks = argc > 1 ? std::max(20, std::atoi(argv[1])) : 300;
+  if (!kHasPeer && argc > 2 && std::strcmp(argv[2], "paced") == 0) {
+    std::fprintf(stderr,
+                 "bench_regions: paced needs FCL: install libfcl-dev and configure again\n");
+    return 2;
+  }
   std::printf(
       "scene,delta_rel,mode,budget_us,budget_units,tolerance_N,mean_us,median_us,p99_us,units,"
       "settled_units,near_regions,contacts,without_contact,force_nrmse,felt_nrmse,"
