@@ -25,10 +25,11 @@ class TailTime {
   [[nodiscard]] std::uint64_t expected_ns(std::uint64_t contacts) const noexcept {
     return contact_ns_ * (contacts + kFixed) * 5 / 4;
   }
-  /// How many contacts a tail of this time does for; infinitely many where they take none.
+  /// Of how many contacts the tail is expected to take this time; infinitely many where they take
+  /// none.
   [[nodiscard]] double contacts_in(std::uint64_t tail_ns) const noexcept {
     if (contact_ns_ == 0) return std::numeric_limits<double>::infinity();
-    return static_cast<double>(tail_ns) / static_cast<double>(contact_ns_) -
+    return static_cast<double>(tail_ns * 4 / 5) / static_cast<double>(contact_ns_) -
            static_cast<double>(kFixed);
   }
   void learn(std::uint64_t tail_ns, std::uint64_t contacts) noexcept {

@@ -10,6 +10,10 @@ namespace {
 
 /// A tick's change of a presence.
 constexpr float kFade = 1.0f / 16;
+/// The same of what crosses, which may be deep already when it is found, and of those who go where
+/// so many times what there is time for are felt: that ticks end in time comes first.
+constexpr float kFastFade = 1.0f / 4;
+constexpr double kFarTooMany = 1.5;
 /// Fewer stay where they are more than what there is time for by a quarter, and more where two
 /// sixteenths more would not be too many: time is never quite the same.
 constexpr double kMostOver = 1.25;
@@ -25,12 +29,15 @@ constexpr std::uint32_t kOrder[Crowd::kAll] = {0, 8, 4, 12, 2, 10, 6, 14,
 
 class Thinning {
  public:
-  Thinning(QueryMemory& memory, std::span<const Active> active) noexcept
-      : memory_(memory), active_(active) {}
+  Thinning(QueryMemory& memory, std::span<const Active> active, double most) noexcept
+      : memory_(memory),
+        active_(active),
+        fade_(memory.crowd.felt > kFarTooMany * most ? kFastFade : kFade) {}
 
   /// @return how many stay, without those that cross
   std::uint32_t run() noexcept {
     std::uint32_t stay = 0;
+    memory_.crowd.felt = 0;
     for (std::size_t i = 0; i < active_.size();) {
       const std::size_t end = neighbours_end(i);
       stay += thin_out_neighbours(active_.subspan(i, end - i));
@@ -62,20 +69,24 @@ class Thinning {
   }
 
   std::uint32_t thin_out_neighbours(std::span<const Active> neighbours) noexcept {
-    bool alone = true;  // the first that is felt, and none that stays
+    bool nobody = true;  // who is felt stays
     for (const Active& item : neighbours) {
-      if (is_apart(item) && stays(item)) alone = false;
+      if (is_apart(item) && stays(item)) nobody = false;
     }
+    bool alone = nobody;  // the first that is felt, then
     std::uint32_t stay = 0;
     for (const Active& item : neighbours) {
       float& absence = memory_.crowd.absence[item.state];
       if (is_apart(item)) {
         const bool here = alone || stays(item);
         alone = false;
-        absence = moved(absence, here ? -kFade : kFade);
+        absence = moved(absence, here ? -kFade : fade_);
         stay += here ? 1u : 0u;
+        memory_.crowd.felt += absence < 1 ? 1u : 0u;
+      } else if (witness_of(item).crosses()) {
+        absence = moved(absence, -kFastFade);
       } else {
-        absence = witness_of(item).crosses() ? moved(absence, -kFade) : 0;
+        absence = nobody || stays(item) ? 0 : 1;
       }
       whole_ = whole_ && absence == 0;
     }
@@ -96,6 +107,7 @@ class Thinning {
 
   QueryMemory& memory_;
   std::span<const Active> active_;
+  float fade_;  // of those who go
   bool whole_ = true;
 };
 
@@ -104,11 +116,12 @@ class Thinning {
 void thin_out(QueryMemory& memory, std::span<const Active> active, double most) noexcept {
   Crowd& crowd = memory.crowd;
   if (!crowd.thinned && static_cast<double>(active.size()) <= most) return;
-  Thinning thinning(memory, active);
+  Thinning thinning(memory, active, most);
   const double stay = thinning.run();
   std::uint32_t& share = crowd.share;
   if (share > 1 && stay > kMostOver * most) {
-    --share;
+    const double less = most > 0 ? share * most / stay : 0;
+    share = less > 1 ? static_cast<std::uint32_t>(less) : 1;
   } else if (share < Crowd::kAll && stay * (share + kSlack) <= most * share) {
     ++share;
   }

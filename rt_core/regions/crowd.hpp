@@ -16,6 +16,7 @@ struct Crowd {
   static constexpr std::uint32_t kAll = 16;
 
   std::uint32_t share = kAll;  ///< of sixteen regions in a row so many are, at least one
+  std::uint32_t felt = 0;      ///< how many were, in part or wholly, without those that cross
   bool thinned = false;        ///< not all are, or not wholly
   std::span<float> absence;    ///< [states] how much of each is not: 0 to 1
 
@@ -39,8 +40,10 @@ struct Crowd {
 /// depth first, so that those in a row are neighbours: of sixteen at least one stays, so that no
 /// place is lost, and all that cross the other body.
 ///
-/// Who stays or goes does so by a sixteenth a tick, so that forces come and go smoothly. What is
-/// not felt yet is wholly there.
+/// Who stays or goes does so by a sixteenth a tick, so that forces come and go smoothly; where half
+/// as many again as `most` are felt they go by a quarter, and so comes what crosses. What is not
+/// felt yet is wholly there, but beside one that is felt and stays, where it would have to go
+/// again.
 /// @param most  regions, those that cross not counted; infinity: all there are
 /// O(active)
 void thin_out(QueryMemory& memory, std::span<const Active> active, double most) noexcept;

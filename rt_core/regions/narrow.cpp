@@ -137,21 +137,29 @@ class Narrowing {
   /// Until the open intervals are within the tolerance or the budget ends.
   /// @param may_lag  or until it shows that searches do not keep up
   void narrow_widest(bool may_lag) noexcept {
-    MinQueue<std::uint32_t, MoreUrgent> queue(work_.memory.queue, MoreUrgent{work_.active()});
-    double open_m = 0;
     if (begun_ != image::kNone) work_.active()[begun_].urgency = kFarthest;
+    std::uint32_t open = 0;
+    double open_m = 0;
     for (std::uint32_t i = 0; i < work_.count; ++i) {
       open_m += work_.width_m(work_.active()[i]);
-      if (work_.active()[i].width > kClosed) queue.push(i);
+      if (work_.active()[i].width > kClosed) work_.memory.queue[open++] = i;
     }
     count_all();
+    if (open == 0 || open_m <= work_.demand.tolerance_m) return;
+    // In a crowd putting them in order takes a while; often neither is there need of it nor time.
+    if (may_lag && lags()) return;
+    work_.truncated = !work_.pace.go_on();
+    if (work_.truncated) return;
+    MinQueue<std::uint32_t, MoreUrgent> queue(work_.memory.queue.first(open),
+                                              MoreUrgent{work_.active()});
+    queue.fill();
     const bool nearly_done =
         pursuit_.searches >= kFewSearches && units_to_close() < kAtOnce * affordable();
     const bool at_once = work_.demand.limited && (work_.swept || nearly_done);
     for (std::uint32_t step = 0; !queue.empty() && open_m > work_.demand.tolerance_m; ++step) {
       const std::uint32_t index = queue.top();
       Active& item = work_.active()[index];
-      if (may_lag && step % kStepsPerLook == 0 && lags()) return;
+      if (may_lag && step > 0 && step % kStepsPerLook == 0 && lags()) return;
       queue.pop();
       open_m -= work_.width_m(item);
       count_anew(item, [&] { narrow_one(index, at_once); });

@@ -81,15 +81,12 @@ void Work::widen(Active& item) noexcept {
 void Work::weigh_all() noexcept {
   float sum = 0;
   float known = 0;
-  for (const Active& item : active()) {
-    const float cost = state_of(item).cost;
-    sum += sqrt_of(cost);
-    known += cost > 0 ? 1.0f : 0.0f;
-  }
   for (Active& item : active()) {
-    const float cost = state_of(item).cost;
-    if (cost > 0) item.weight = sqrt_of(cost) * known / sum;
+    item.weight = sqrt_of(state_of(item).cost);
+    sum += item.weight;
+    known += item.weight > 0 ? 1.0f : 0.0f;
   }
+  for (Active& item : active()) item.weight = item.weight > 0 ? item.weight * known / sum : 1;
 }
 
 void Work::widen_all() noexcept {

@@ -131,14 +131,16 @@ TEST(RegionsFollow, force_is_near_the_exact_one_at_a_fortieth_of_its_work) {
 }
 
 /// An engine on which the tail of a tick takes a microsecond for each contact.
-TickResult tick_with_slow_tail(BakedScene& s, int tick, std::uint64_t contacts_in_time) {
+/// @param units  the default: more than an exact tick takes
+TickResult tick_with_slow_tail(BakedScene& s, int tick, std::uint64_t contacts_in_time,
+                               std::uint64_t units = 100'000) {
   constexpr std::uint64_t kContact_ns = 1000;
-  constexpr std::uint64_t kUnits = 100'000;  // more than an exact tick takes
-  const std::uint64_t tail_ns = kContact_ns * (contacts_in_time + 4);
-  s.engine->tail = {};
-  for (int i = 0; i < 50; ++i) s.engine->tail.learn(kContact_ns * 104, 100);
+  TailTime& tail = s.engine->tail;
+  tail = {};
+  for (int i = 0; i < 50; ++i) tail.learn(kContact_ns * 104, 100);
   const auto stopped = [](void*) -> std::uint64_t { return 0; };
-  return tick_at(s, tick, {.units = kUnits, .clock_ns = stopped, .deadline_ns = 2 * tail_ns});
+  const std::uint64_t deadline_ns = 2 * tail.expected_ns(contacts_in_time);
+  return tick_at(s, tick, {.units = units, .clock_ns = stopped, .deadline_ns = deadline_ns});
 }
 
 /// Hundreds of contacts of two surfaces that fit take longer to report than a small budget is.
@@ -173,6 +175,21 @@ TEST(RegionsFollow, a_part_of_the_contacts_tells_the_force_where_there_is_no_tim
   const TickResult truth = tick_at(exact, 3 * kTicks);
   const TickResult all = tick_at(thinned, 3 * kTicks);  // no budget, no sample
   EXPECT_EQ(all.contacts.size(), truth.contacts.size());
+}
+
+/// From the start on, when more are found in every tick.
+TEST(RegionsFollow, ticks_with_more_contacts_than_there_is_time_for_are_soon_over) {
+  constexpr std::uint64_t kInTime = 80;
+  for (const std::uint64_t units : {300u, 600u, 1200u}) {
+    BakedScene thinned = scene();
+    int over = 0;
+    for (int i = 0; i < 2 * kTicks; ++i) {
+      const TickResult r = tick_with_slow_tail(thinned, i, kInTime, units);
+      over += static_cast<double>(r.contacts.size()) > 1.7 * kInTime ? 1 : 0;
+    }
+    RecordProperty("over_" + std::to_string(units), over);
+    EXPECT_LE(over, 8) << units << " units";
+  }
 }
 
 /// In a few regions of everywhere what is near is looked up, where a search of all would take many

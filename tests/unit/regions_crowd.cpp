@@ -48,7 +48,7 @@ struct Surface {
     for (int i = 0; i < kLong; ++i) tail.learn(kContact_ns, 0);
     for (int i = 0; i < kLong; ++i) tail.learn(kContact_ns * 1000, 996);
     const Budget budget{.clock_ns = [](void*) -> std::uint64_t { return 0; },
-                        .deadline_ns = 2 * kContact_ns * contacts};
+                        .deadline_ns = 2 * tail.expected_ns(contacts)};
     memory.active = active;
     for (int i = 0; i < kLong; ++i) {
       Meter meter(budget, tail);
@@ -107,7 +107,32 @@ TEST(RegionsCrowd, of_every_node_one_stays_whichever_is_felt) {
     }
     s.thin_out(0);
     EXPECT_EQ(s.absence[alone], 0) << alone;
-    EXPECT_EQ(s.felt(), kWidth + 1) << alone;  // what is not felt is there when it comes near
+    // What is not felt is there when it comes near, but beside the one that is to stay.
+    EXPECT_EQ(s.felt(), (alone == 0 ? 1 : kWidth) + 1) << alone;
+  }
+}
+
+/// It would only go again, and take time meanwhile.
+TEST(RegionsCrowd, what_comes_near_beside_one_that_stays_is_left_out_from_the_start) {
+  Surface s(8);
+  for (std::uint32_t i = 0; i < s.states.size(); ++i) {
+    if (i % 2 == 1) s.states[i].witness.distance = 2;  // not felt
+  }
+  s.thin_out(16);
+  const std::size_t before = s.felt();
+  for (regions::RegionState& state : s.states) state.witness.distance = 0.9f;
+  for (int i = 0; i < kLong; ++i) {
+    s.thin_out(16, 1);
+    EXPECT_LE(s.felt(), before) << i;
+  }
+}
+
+TEST(RegionsCrowd, too_many_are_as_few_as_there_is_time_for_as_soon_as_they_have_gone) {
+  for (const double most : {100.0, 64.0, 40.0}) {
+    Surface s(16);
+    s.thin_out(most, 16 + 1);
+    EXPECT_LE(static_cast<double>(s.felt()), 1.25 * most);
+    EXPECT_GE(static_cast<double>(s.felt()), 0.75 * most);
   }
 }
 
@@ -120,17 +145,33 @@ TEST(RegionsCrowd, what_crosses_stays_and_does_not_count) {
   EXPECT_EQ(s.felt(), s.states.size() / 2 + 4);
 }
 
+TEST(RegionsCrowd, what_was_left_out_is_there_four_ticks_after_it_has_crossed) {
+  Surface s(4);
+  s.thin_out(10);
+  for (regions::RegionState& state : s.states) state.witness.distance = 0;
+  s.thin_out(10, 3);
+  EXPECT_GT(*std::max_element(s.absence.begin(), s.absence.end()), 0);
+  s.thin_out(10, 1);
+  for (const float absence : s.absence) EXPECT_EQ(absence, 0);
+}
+
 TEST(RegionsCrowd, nobody_goes_or_comes_in_less_than_sixteen_ticks) {
   Surface s(4);
   for (int i = 0; i < 2 * kLong; ++i) {
     const std::vector<float> before = s.absence;
-    s.thin_out(i < kLong ? 10 : kInfinity, 1);
+    s.thin_out(i < kLong ? 48 : kInfinity, 1);
     for (std::size_t k = 0; k < before.size(); ++k) {
       EXPECT_LE(std::abs(s.absence[k] - before[k]), 1.0f / 16);
     }
   }
   for (const float absence : s.absence) EXPECT_EQ(absence, 0);
   EXPECT_EQ(s.memory.crowd.share, Crowd::kAll);
+}
+
+TEST(RegionsCrowd, far_too_many_go_within_four_ticks) {
+  Surface s(16);
+  s.thin_out(100, 1 + 1 + 4);  // who stays is told by the first, how fast by the second
+  EXPECT_LE(static_cast<double>(s.felt()), 1.25 * 100);
 }
 
 TEST(RegionsCrowd, time_that_wavers_changes_nobody) {
