@@ -29,7 +29,7 @@ class TailTime {
   /// none.
   [[nodiscard]] double contacts_in(std::uint64_t tail_ns) const noexcept {
     if (contact_ns_ == 0) return std::numeric_limits<double>::infinity();
-    return static_cast<double>(tail_ns * 4 / 5) / static_cast<double>(contact_ns_) -
+    return static_cast<double>(4 * tail_ns) / static_cast<double>(5 * contact_ns_) -
            static_cast<double>(kFixed);
   }
   void learn(std::uint64_t tail_ns, std::uint64_t contacts) noexcept {
