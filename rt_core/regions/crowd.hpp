@@ -16,8 +16,8 @@ struct Crowd {
   static constexpr std::uint32_t kAll = 16;
 
   std::uint32_t share = kAll;  ///< of sixteen regions in a row so many are, at least one
-  std::uint32_t felt = 0;      ///< how many were, in part or wholly, without those that cross
   bool thinned = false;        ///< not all are, or not wholly
+  std::uint32_t felt = 0;      ///< where thinned: how many are, those that cross not counted
   std::span<float> absence;    ///< [states] how much of each is not: 0 to 1
 
   [[nodiscard]] double presence(std::uint32_t state) const noexcept {
@@ -30,6 +30,7 @@ struct Crowd {
     if (!thinned) return;
     for (float& a : absence) a = 0;
     share = kAll;
+    felt = 0;
     thinned = false;
   }
 };

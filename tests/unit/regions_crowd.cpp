@@ -201,6 +201,7 @@ TEST(RegionsCrowd, all_are_gathered_at_once) {
   s.thin_out(10);
   s.memory.crowd.gather_all();
   EXPECT_EQ(s.memory.crowd.share, Crowd::kAll);
+  EXPECT_EQ(s.memory.crowd.felt, 0);
   for (const float absence : s.absence) EXPECT_EQ(absence, 0);
 }
 
