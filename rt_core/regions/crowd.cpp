@@ -69,11 +69,11 @@ class Thinning {
   }
 
   std::uint32_t thin_out_neighbours(std::span<const Active> neighbours) noexcept {
-    bool nobody = true;  // who is felt stays
+    bool nobody_stays = true;  // of those that are felt
     for (const Active& item : neighbours) {
-      if (is_apart(item) && stays(item)) nobody = false;
+      if (is_apart(item) && stays(item)) nobody_stays = false;
     }
-    bool alone = nobody;  // the first that is felt, then
+    bool alone = nobody_stays;  // the first that is felt, in their place
     std::uint32_t stay = 0;
     for (const Active& item : neighbours) {
       float& absence = memory_.crowd.absence[item.state];
@@ -86,7 +86,7 @@ class Thinning {
       } else if (witness_of(item).crosses()) {
         absence = moved(absence, -kFastFade);
       } else {
-        absence = nobody || stays(item) ? 0 : 1;
+        absence = nobody_stays || stays(item) ? 0 : 1;
       }
       whole_ = whole_ && absence == 0;
     }
