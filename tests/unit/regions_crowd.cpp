@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "rt_core/regions/work.hpp"
@@ -155,17 +156,20 @@ TEST(RegionsCrowd, what_was_left_out_is_there_four_ticks_after_it_has_crossed) {
   for (const float absence : s.absence) EXPECT_EQ(absence, 0);
 }
 
-TEST(RegionsCrowd, nobody_goes_or_comes_in_less_than_sixteen_ticks) {
-  Surface s(4);
-  for (int i = 0; i < 2 * kLong; ++i) {
-    const std::vector<float> before = s.absence;
-    s.thin_out(i < kLong ? 48 : kInfinity, 1);
-    for (std::size_t k = 0; k < before.size(); ++k) {
-      EXPECT_LE(std::abs(s.absence[k] - before[k]), 1.0f / 16);
+TEST(RegionsCrowd, nobody_comes_in_less_than_sixteen_ticks_or_goes_unless_far_too_many_are_felt) {
+  for (const auto& [most, fastest] : {std::pair(48.0, 1.0f / 16), std::pair(10.0, 1.0f / 4)}) {
+    Surface s(4);
+    for (int i = 0; i < 2 * kLong; ++i) {
+      const std::vector<float> before = s.absence;
+      s.thin_out(i < kLong ? most : kInfinity, 1);
+      for (std::size_t k = 0; k < before.size(); ++k) {
+        EXPECT_LE(s.absence[k] - before[k], fastest);
+        EXPECT_LE(before[k] - s.absence[k], 1.0f / 16);
+      }
     }
+    for (const float absence : s.absence) EXPECT_EQ(absence, 0);
+    EXPECT_EQ(s.memory.crowd.share, Crowd::kAll);
   }
-  for (const float absence : s.absence) EXPECT_EQ(absence, 0);
-  EXPECT_EQ(s.memory.crowd.share, Crowd::kAll);
 }
 
 TEST(RegionsCrowd, far_too_many_go_within_four_ticks) {
