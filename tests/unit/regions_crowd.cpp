@@ -119,12 +119,12 @@ TEST(RegionsCrowd, what_comes_near_beside_one_that_stays_is_left_out_from_the_st
   for (std::uint32_t i = 0; i < s.states.size(); ++i) {
     if (i % 2 == 1) s.states[i].witness.distance = 2;  // not felt
   }
-  s.thin_out(16);
-  const std::size_t before = s.felt();
+  constexpr double kMost = 16;
+  s.thin_out(kMost);
   for (regions::RegionState& state : s.states) state.witness.distance = 0.9f;
   for (int i = 0; i < kLong; ++i) {
-    s.thin_out(16, 1);
-    EXPECT_LE(s.felt(), before) << i;
+    s.thin_out(kMost, 1);
+    EXPECT_LE(static_cast<double>(s.felt()), 1.25 * kMost) << i;
   }
 }
 
