@@ -61,6 +61,7 @@ struct Layout {
   std::span<regions::Containment> containment;
   std::span<std::uint32_t> first_state, queue;
   std::span<regions::RegionState> regions;
+  std::span<regions::Witness> witnesses;
   std::span<regions::RegionPairs> kept;
   std::span<regions::Active> active;
   std::span<regions::WayOut> ways_out;
@@ -99,6 +100,7 @@ void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
   out.containment = arena.array<regions::Containment>(scene.pairs.size());
   out.first_state = arena.array<std::uint32_t>(scene.pairs.size());
   out.regions = arena.array<regions::RegionState>(all);
+  out.witnesses = arena.array<regions::Witness>(all);
   out.kept = arena.array<regions::RegionPairs>(all);
   out.active = arena.array<regions::Active>(all);
   out.queue = arena.array<std::uint32_t>(all);
@@ -163,6 +165,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.regions.containment = layout.containment;
   e.regions.first_state = layout.first_state;
   e.regions.states = layout.regions;
+  e.regions.witnesses = layout.witnesses;
   e.regions.kept = layout.kept;
   e.regions.active = layout.active;
   e.regions.queue = layout.queue;

@@ -56,10 +56,10 @@ Bounds search_on(Work& work, const Active& item, const Reach& reach, Vec3d cours
   const std::uint64_t used = work.pace.used();
   const Bounds found =
       begun ? go_on_searching(*memory.kernels, work.frame_of(item), *memory.search, work.pace,
-                              state.witness, reach, moved_since(kept.at, pair, item.region),
+                              work.witness_of(item), reach, moved_since(kept.at, pair, item.region),
                               kept.left)
             : search(*memory.kernels, work.frame_of(item), *memory.search, work.pace, item.region,
-                     state.witness, reach, kept.any() ? nullptr : &kept.left);
+                     work.witness_of(item), reach, kept.any() ? nullptr : &kept.left);
   const double spent = before + static_cast<double>(work.pace.used() - used);
   const bool has_first = reach.first && found.best.known();
   if (begun && (found.complete || found.crowded)) kept.drop();
@@ -95,11 +95,11 @@ bool search_along(Work& work, Active& item, float tolerance, bool first,
                     in_image(pair, course.way),
                     widest_within(tolerance)};
   const std::uint64_t before = work.pace.used();
-  const bool known = state.witness.known();
+  const bool known = work.witness_of(item).known();
   const float upper = work.upper_of(item);
   const Bounds found = search_on(work, item, reach, course.way);
   const auto spent = static_cast<double>(work.pace.used() - before);
-  state.witness = found.best;
+  work.witness_of(item) = found.best;
   if (known) {
     const auto nearer = static_cast<double>(upper - work.upper_of(item));
     memory.pursuit.search.add(nearer / pair.delta, spent);

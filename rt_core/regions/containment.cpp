@@ -190,7 +190,7 @@ void activate(Work& work, std::uint32_t pair, const Witness& witness) noexcept {
   QueryMemory& memory = work.memory;
   const std::uint32_t region = memory.frames[pair].a->region_triangles[witness.a].region;
   const std::uint32_t state = memory.first_state[pair] + region;
-  memory.states[state].witness = witness;
+  memory.witnesses[state] = witness;
   memory.crowd.absence[state] = 0;
   for (const Active& item : work.active()) {
     if (item.state == state) return;

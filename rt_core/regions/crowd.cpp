@@ -50,9 +50,7 @@ class Thinning {
   [[nodiscard]] bool whole() const noexcept { return whole_; }
 
  private:
-  const Witness& witness_of(const Active& item) noexcept {
-    return memory_.states[item.state].witness;
-  }
+  const Witness& witness_of(const Active& item) noexcept { return memory_.witnesses[item.state]; }
 
   std::size_t neighbours_end(std::size_t first) noexcept {
     const Active& head = active_[first];

@@ -94,14 +94,16 @@ void gather_regions(Work& work, std::uint32_t index, bool swept) noexcept {
 
 /// A witness that was not felt, and cannot be after the way since, need not be measured: from then
 /// on its distance is a bound from below.
-bool is_still_far(const Work& work, const Active& item, RegionState& state) noexcept {
+bool is_still_far(const Work& work, const Active& item) noexcept {
+  RegionState& state = work.state_of(item);
+  Witness& witness = work.witness_of(item);
   const PairState& pair = work.pair_of(item);
   const double way = way_of(pair, item.region);
   const double since = way - state.active_at + kMotionSlack;
   state.active_at = way;
-  const float lower = float_below(static_cast<double>(state.witness.distance) - since);
-  if (!state.witness.known() || lower < work.delta_of(item) + kClosed) return false;
-  state.witness.distance = lower;
+  const float lower = float_below(static_cast<double>(witness.distance) - since);
+  if (!witness.known() || lower < work.delta_of(item) + kClosed) return false;
+  witness.distance = lower;
   return true;
 }
 
@@ -147,11 +149,11 @@ void measure_witnesses(Work& work) noexcept {
   WitnessBatch batch(work);
   for (std::uint32_t i = 0; i < work.count; ++i) {
     Active& item = work.active()[i];
-    RegionState& state = work.state_of(item);
     // What lies beside what is certainly not felt is not looked at either.
-    item.climbed = is_still_far(work, item, state);
-    if (item.climbed || !state.witness.known()) continue;
-    if (static_cast<double>(state.witness.distance) <= last_motion(work.pair_of(item))) {
+    item.climbed = is_still_far(work, item);
+    const Witness& witness = work.witness_of(item);
+    if (item.climbed || !witness.known()) continue;
+    if (static_cast<double>(witness.distance) <= last_motion(work.pair_of(item))) {
       work.memory.containment[item.pair].doubtful = true;
     }
     batch.add(i);

@@ -30,8 +30,8 @@ class Measured {
 
   void operator()(std::uint32_t index, const Witness& pair) noexcept {
     const Active& item = work_.active()[index];
-    RegionState& state = work_.state_of(item);
-    if (pair.distance < state.witness.distance) state.witness = pair;
+    Witness& witness = work_.witness_of(item);
+    if (pair.distance < witness.distance) witness = pair;
     if (index != index_) k_ = 0;
     index_ = index;
     RegionPairs& kept = work_.kept_of(item);

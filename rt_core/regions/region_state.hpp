@@ -31,10 +31,7 @@ struct RegionState {
   float rest = 0;
   float lower = 0;  ///< the least of `rest` and of the distances of the kept pairs
   Stand at;
-  /// Its distance is of the last tick in which the region was active: of a contact exact, else
-  /// perhaps a bound from below that is no less than delta.
-  Witness witness;
-  double active_at = 0;  ///< way_of() in that tick
+  double active_at = 0;  ///< way_of() in the last tick in which the region was active
   float cost = 0;        ///< work units of the last search of all of it; 0: not known
   float ahead = 1;       ///< share of the ticks for which it is given a course (course.hpp)
   /// So many exact searches to come keep nothing, for it would not last.

@@ -63,12 +63,16 @@ struct QueryMemory {
   std::span<Containment> containment;    ///< [pairs]
   std::span<std::uint32_t> first_state;  ///< [pairs], into states
   std::span<RegionState> states;         ///< [sum over pairs of the regions of a]
-  std::span<RegionPairs> kept;           ///< [states]
-  std::span<Active> active;              ///< [states], those of a tick in the order of their states
-  std::span<std::uint32_t> queue;        ///< [states]
-  std::span<WayOut> ways_out;            ///< [ways_out_for(states)]
-  std::span<float> swept;                ///< [most regions of one body]
-  std::span<Contact> contacts;           ///< [limits.contacts]
+  /// [states] The nearest pair known of each region. Its distance is of the last tick in which the
+  /// region was active: of a contact exact, else perhaps a bound from below that is no less than
+  /// delta. Apart from the states, because it is all of them that most stages ask for.
+  std::span<Witness> witnesses;
+  std::span<RegionPairs> kept;     ///< [states]
+  std::span<Active> active;        ///< [states], those of a tick in the order of their states
+  std::span<std::uint32_t> queue;  ///< [states]
+  std::span<WayOut> ways_out;      ///< [ways_out_for(states)]
+  std::span<float> swept;          ///< [most regions of one body]
+  std::span<Contact> contacts;     ///< [limits.contacts]
   /// [states] A bound of each region's distance and most_way_of() when it held, added: what is left
   /// of it tells far regions without their states.
   std::span<double> lasting;

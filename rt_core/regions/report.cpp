@@ -186,7 +186,7 @@ class Report {
     const Place a{*pair.image_a, witness.a, (1 / pair.scale_a) * on_a};
     const Fall fall = fall_across(a, normal);
     if (!(fall.rate > 0)) return {normal};
-    const Witness& beside = memory_.states[memory_.first_state[item.pair] + fall.region].witness;
+    const Witness& beside = memory_.witnesses[memory_.first_state[item.pair] + fall.region];
     if (!beside.known() || !(beside.distance < witness.distance)) return {normal};
     const double share = smooth_step((kNone - fall.rate) / (kNone - kAll));
     if (!(share > 0)) return {normal, 0};

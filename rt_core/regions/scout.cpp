@@ -141,7 +141,7 @@ std::uint32_t scout(Work& work, std::uint32_t pair) noexcept {
   if (!found.known()) return image::kNone;
   const std::uint32_t region = frame.a->region_triangles[found.a].region;
   const std::uint32_t state = memory.first_state[pair] + region;
-  memory.states[state].witness = found;
+  memory.witnesses[state] = found;
   return state;
 }
 

@@ -34,7 +34,7 @@ struct Work {
     return memory.kept[item.state];
   }
   [[nodiscard]] Witness& witness_of(const Active& item) const noexcept {
-    return state_of(item).witness;
+    return memory.witnesses[item.state];
   }
 
   [[nodiscard]] float delta_of(const Active& item) const noexcept {

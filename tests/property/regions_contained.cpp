@@ -198,8 +198,8 @@ TEST(RegionsContained, what_is_before_a_thin_wall_is_not_behind_it_while_its_int
   for (regions::RegionPairs& kept : memory.kept) kept.near.count = 0;
   for (regions::RegionState& state : memory.states) {
     state.rest = state.lower = static_cast<float>(before.min_distance_m / memory.pairs[0].unit_m);
-    state.witness.b = back;
   }
+  for (regions::Witness& witness : memory.witnesses) witness.b = back;
   const Pose poses[2] = {{at, {}}, {}};
   const TickResult r = tick_or_fail(*scene.engine, poses, {.units = 1});
   ASSERT_FALSE(r.contacts.empty());
@@ -231,11 +231,11 @@ TEST(RegionsContained, corner_that_is_not_the_nearest_does_not_tell_a_side) {
       for (std::uint32_t face = 0; face < 4; ++face) {
         tick_or_fail(*scene.engine, poses);
         for (regions::RegionPairs& kept : memory.kept) kept.near.count = 0;
-        for (regions::RegionState& state : memory.states) state.witness.b = face;
+        for (regions::Witness& witness : memory.witnesses) witness.b = face;
         tick_or_fail(*scene.engine, poses, {.units = 1});  // measures them
-        for (regions::RegionState& state : memory.states) {
-          state.rest = state.lower =
-              state.witness.distance - static_cast<float>(0.05 * memory.pairs[0].delta);
+        for (std::uint32_t k = 0; k < memory.states.size(); ++k) {
+          memory.states[k].rest = memory.states[k].lower =
+              memory.witnesses[k].distance - static_cast<float>(0.05 * memory.pairs[0].delta);
         }
         const TickResult r = tick_or_fail(*scene.engine, poses, {.units = 1});
         for (const Contact& c : r.contacts) EXPECT_GT(c.distance_m, 0) << body << ' ' << i;

@@ -506,15 +506,15 @@ void expect_kept_are_bounded(const BakedScene& s, std::uint64_t active, const Po
            pair.unit_m;
   };
   for (const regions::Active& item : memory.active.first(active)) {
-    const regions::RegionState& state = memory.states[item.state];
-    if (!state.witness.known()) continue;
-    const double distance = double(state.witness.distance);
-    const double exact = truth(state.witness);
+    const regions::Witness& witness = memory.witnesses[item.state];
+    if (!witness.known()) continue;
+    const double distance = double(witness.distance);
+    const double exact = truth(witness);
     ASSERT_LE(distance, exact + kRounding);
     ASSERT_GE(distance, std::min(exact, pair.delta) - kRounding);
     out.witnesses += distance < exact - 1e-4 * pair.delta ? 1 : 0;
     const double reach = double(pair.image_a->regions[item.region].reach);
-    const double way = regions::way_since(state.at, pair, reach);
+    const double way = regions::way_since(memory.states[item.state].at, pair, reach);
     const regions::RegionPairs& kept = memory.kept[item.state];
     for (std::uint32_t k = 0; k < kept.near.count; ++k) {
       const double by_proof = double(kept.near.pairs[k].distance - item.moved);

@@ -69,7 +69,7 @@ std::vector<double> depths(const BakedScene& s, const TickResult& tick) {
   const regions::QueryMemory& memory = s.engine->regions;
   std::vector<double> out(memory.states.size(), 0);
   for (const regions::Active& item : memory.active.first(tick.front_nodes)) {
-    const regions::Witness& witness = memory.states[item.state].witness;
+    const regions::Witness& witness = memory.witnesses[item.state];
     const double deep = memory.pairs[0].delta - static_cast<double>(witness.distance);
     if (witness.known() && deep > 0) out[item.state] = deep;
   }
@@ -322,9 +322,9 @@ TEST(RegionsFollow, units_are_kept_and_distances_are_of_the_present_pose) {
     regions::Work work(memory, {}, meter);
     std::vector<regions::Witness> before;
     for (std::uint32_t k = 0; k < memory.states.size(); ++k) {
-      if (!memory.states[k].witness.known()) continue;
+      if (!memory.witnesses[k].known()) continue;
       memory.active[work.count++] = {.width = 1, .way = {}, .state = k, .region = k};
-      before.push_back(memory.states[k].witness);
+      before.push_back(memory.witnesses[k]);
       before.back().distance = measured(before.back());
     }
     regions::follow(work, units);

@@ -25,18 +25,18 @@ constexpr int kLong = 64;  // ticks: longer than shares and presences take
 /// Regions of full nodes, all felt, at half of delta.
 struct Surface {
   explicit Surface(std::uint32_t nodes)
-      : regions(kWidth * nodes), states(kWidth * nodes), absence(kWidth * nodes) {
+      : regions(kWidth * nodes), witnesses(kWidth * nodes), absence(kWidth * nodes) {
     for (std::uint32_t i = 0; i < regions.size(); ++i) {
       regions[i].parent = i / kWidth;
       regions[i].slot = i % kWidth;
-      states[i].witness = {i, i, 0.5f};
+      witnesses[i] = {i, i, 0.5f};
       active.push_back({.way = {}, .state = i, .region = i, .pair = 0});
     }
     view.regions = regions;
     pair.image_a = &view;
     pair.delta = 1;
     memory.pairs = {&pair, 1};
-    memory.states = states;
+    memory.witnesses = witnesses;
     memory.crowd.absence = absence;
   }
 
@@ -64,7 +64,7 @@ struct Surface {
   }
 
   std::vector<image::Region> regions;
-  std::vector<regions::RegionState> states;
+  std::vector<regions::Witness> witnesses;
   std::vector<float> absence;
   std::vector<regions::Active> active;
   ImageView view;
@@ -92,7 +92,7 @@ TEST(RegionsCrowd, no_more_are_felt_than_there_is_time_for_by_a_quarter) {
 TEST(RegionsCrowd, who_stays_is_spread_evenly) {
   Surface s(4);
   s.thin_out(16);
-  for (std::uint32_t i = 0; i < s.states.size(); i += 8) {
+  for (std::uint32_t i = 0; i < s.witnesses.size(); i += 8) {
     const auto here = std::count_if(s.absence.begin() + i, s.absence.begin() + i + 8,
                                     [](float absence) { return absence < 1; });
     EXPECT_GE(here, 1) << i;
@@ -104,7 +104,7 @@ TEST(RegionsCrowd, of_every_node_one_stays_whichever_is_felt) {
   for (std::uint32_t alone = 0; alone < kWidth; ++alone) {
     Surface s(2);
     for (std::uint32_t i = 0; i < kWidth; ++i) {
-      if (i != alone) s.states[i].witness.distance = 2;  // not felt
+      if (i != alone) s.witnesses[i].distance = 2;  // not felt
     }
     s.thin_out(0);
     EXPECT_EQ(s.absence[alone], 0) << alone;
@@ -116,12 +116,12 @@ TEST(RegionsCrowd, of_every_node_one_stays_whichever_is_felt) {
 /// It would only go again, and take time meanwhile.
 TEST(RegionsCrowd, what_comes_near_beside_one_that_stays_is_left_out_from_the_start) {
   Surface s(8);
-  for (std::uint32_t i = 0; i < s.states.size(); ++i) {
-    if (i % 2 == 1) s.states[i].witness.distance = 2;  // not felt
+  for (std::uint32_t i = 0; i < s.witnesses.size(); ++i) {
+    if (i % 2 == 1) s.witnesses[i].distance = 2;  // not felt
   }
   constexpr double kMost = 16;
   s.thin_out(kMost);
-  for (regions::RegionState& state : s.states) state.witness.distance = 0.9f;
+  for (regions::Witness& witness : s.witnesses) witness.distance = 0.9f;
   for (int i = 0; i < kLong; ++i) {
     s.thin_out(kMost, 1);
     EXPECT_LE(static_cast<double>(s.felt()), 1.25 * kMost) << i;
@@ -139,17 +139,17 @@ TEST(RegionsCrowd, too_many_are_as_few_as_there_is_time_for_as_soon_as_they_have
 
 TEST(RegionsCrowd, what_crosses_stays_and_does_not_count) {
   Surface s(4);
-  for (std::uint32_t i = 0; i < s.states.size(); i += 2) s.states[i].witness.distance = 0;
+  for (std::uint32_t i = 0; i < s.witnesses.size(); i += 2) s.witnesses[i].distance = 0;
   s.thin_out(32);
-  EXPECT_EQ(s.felt(), s.states.size());
+  EXPECT_EQ(s.felt(), s.witnesses.size());
   s.thin_out(-1);
-  EXPECT_EQ(s.felt(), s.states.size() / 2 + 4);
+  EXPECT_EQ(s.felt(), s.witnesses.size() / 2 + 4);
 }
 
 TEST(RegionsCrowd, what_was_left_out_is_there_four_ticks_after_it_has_crossed) {
   Surface s(4);
   s.thin_out(10);
-  for (regions::RegionState& state : s.states) state.witness.distance = 0;
+  for (regions::Witness& witness : s.witnesses) witness.distance = 0;
   s.thin_out(10, 3);
   EXPECT_GT(*std::max_element(s.absence.begin(), s.absence.end()), 0);
   s.thin_out(10, 1);
