@@ -8,7 +8,8 @@ namespace {
 
 /// How far a direction leads along the steepest of the ways over a sector. 0 where all lead away
 /// from it.
-double along_sector(Vec3d direction, const Sector& sector, Vec3d normal) noexcept {
+double along_sector(Vec3d direction, const Sector& sector) noexcept {
+  const Vec3d normal = sector.normal;
   const double area2 = squared_norm(normal);
   if (!(area2 > 0)) return 0;
   const Vec3d in_plane = direction - (dot(direction, normal) / area2) * normal;
@@ -33,15 +34,15 @@ bool turned(Vec3d before, Vec3d after) noexcept {
          kTurnedLittle2 * squared_norm(before) * squared_norm(after);
 }
 
-Feature feature_of(const Place& place) noexcept {
-  return feature_at(place.image.region_triangles[place.triangle], place.point);
+Foot foot_of(const Place& place) noexcept {
+  return foot_at(place.image, place.triangle, place.point);
 }
 
 /// Turns a direction off the ways on over a surface, one after the other.
-/// @param at     not on a face
+/// @param foot   of the place; not on a face
 /// @param known  a normal, if any is known. A place that is on two features to rounding may be
 ///               taken for the one that it is none of: it is not turned off farther than that
-void turn_off(const Place& place, Feature at, Vec3d known, Vec3d& direction) noexcept {
+void turn_off(const Place& place, const Foot& foot, Vec3d known, Vec3d& direction) noexcept {
   const auto turn = [&](Vec3d way) {
     const double allowed = dot(known, way);
     const double along = dot(direction, way) - (allowed > 0 ? allowed : 0);
@@ -50,12 +51,12 @@ void turn_off(const Place& place, Feature at, Vec3d known, Vec3d& direction) noe
   const auto turn_off_sector = [&](const Sector& sector) {
     turn(sector.from);
     turn(sector.to);
-    if (at.kind == Feature::Kind::edge) {
-      turn(cross(normal_of(place.image.region_triangles[sector.triangle]), sector.from));
+    if (foot.at.kind == Feature::Kind::edge) {
+      turn(cross(sector.normal, sector.from));
     }
   };
-  turn_off_sector(sector_at(place.image, place.triangle, at));
-  visit_around(place.image, place.triangle, at, turn_off_sector);
+  turn_off_sector(sector_at(place.image, foot.triangle, foot.at));
+  visit_around(place.image, foot, place.point, turn_off_sector);
 }
 
 }  // namespace
@@ -63,20 +64,24 @@ void turn_off(const Place& place, Feature at, Vec3d known, Vec3d& direction) noe
 Fall fall_across(const Place& place, Vec3d direction) noexcept {
   const auto triangles = place.image.region_triangles;
   const std::uint32_t own = triangles[place.triangle].region;
+  const Foot foot = foot_of(place);
   Fall fall;
-  visit_around(place.image, place.triangle, place.point, [&](const Sector& sector) {
-    const image::RegionTriangle& t = triangles[sector.triangle];
-    if (t.region == own) return;
-    const double rate = along_sector(-direction, sector, normal_of(t));
-    if (rate > fall.rate) fall = {rate, t.region};
-  });
+  if (foot.at.kind == Feature::Kind::face) return fall;
+  const auto see = [&](const Sector& sector) {
+    const std::uint32_t region = triangles[sector.triangle].region;
+    if (region == own) return;
+    const double rate = along_sector(-direction, sector);
+    if (rate > fall.rate) fall = {rate, region};
+  };
+  see(sector_at(place.image, foot.triangle, foot.at));  // another region's, beside a sliver
+  visit_around(place.image, foot, place.point, see);
   return fall;
 }
 
 Vec3d common_normal(const Place& a, const Place& b, const Mat3d& b_in_a, Vec3d normal) noexcept {
-  const Feature at_a = feature_of(a);
-  const Feature at_b = feature_of(b);
-  if (at_a.kind == Feature::Kind::face || at_b.kind == Feature::Kind::face) return normal;
+  const Foot at_a = foot_of(a);
+  const Foot at_b = foot_of(b);
+  if (at_a.at.kind == Feature::Kind::face || at_b.at.kind == Feature::Kind::face) return normal;
   const Mat3d to_b = transpose(b_in_a);
   const Vec3d known = to_b * normal;
   Vec3d found = known;

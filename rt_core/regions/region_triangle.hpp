@@ -16,10 +16,28 @@ inline Vec3d corner(const image::RegionTriangle& t, std::uint32_t i, double scal
                        static_cast<double>(t.corners[3 * i + 2])};
 }
 
-/// Outward, of twice the triangle's area, in image coordinates.
+/// Outward, of twice the triangle's area, in image coordinates. 0 of a sliver: so thin that the
+/// rounding of its corners decides where it faces.
 inline Vec3d normal_of(const image::RegionTriangle& t) noexcept {
+  constexpr double kThin2 = 1e-12;  // squared, of the body's radius: corners are off by up to 6e-8
+  constexpr double kMostLength2 = 9;
   const Vec3d p = corner(t, 0, 1);
-  return cross(corner(t, 1, 1) - p, corner(t, 2, 1) - p);
+  const Vec3d to_next = corner(t, 1, 1) - p;
+  const Vec3d to_last = corner(t, 2, 1) - p;
+  const Vec3d normal = cross(to_next, to_last);
+  const double area2 = squared_norm(normal);
+  if (area2 > kThin2 * kMostLength2) return normal;  // as most are, whatever their length
+  const double next2 = squared_norm(to_next);
+  const double last2 = squared_norm(to_last);
+  const double opposite2 = squared_norm(to_last - to_next);
+  const double longer2 = next2 > last2 ? next2 : last2;
+  const double longest2 = opposite2 > longer2 ? opposite2 : longer2;
+  return area2 > kThin2 * longest2 ? normal : Vec3d{};
+}
+
+/// Part of an edge or a corner of the surface around it, and none of a face.
+inline bool is_sliver(const image::RegionTriangle& t) noexcept {
+  return squared_norm(normal_of(t)) == 0;
 }
 
 /// False where the surface may have been met from its back: it is open, or crosses itself.

@@ -94,7 +94,8 @@ class Report {
     const Witness& witness = work_.witness_of(item);
     const double distance = norm(apart);
     // Touching, the outward normal of b's is right whichever side a comes from.
-    const Vec3d normal = distance > kTouching ? (1 / distance) * apart : facing(pair, witness.b);
+    const Vec3d normal =
+        distance > kTouching ? (1 / distance) * apart : facing_at(pair, witness.b, on_a);
     const bool flip = distance > kTouching && (memory_.containment[item.pair].inside ||
                                                is_behind(item, on_a, on_a - apart, normal));
     const Felt felt = flip ? Felt{-normal, 1} : at_border(item, on_a, on_a - apart, normal);
@@ -118,15 +119,19 @@ class Report {
     const PairState& pair = work_.pair_of(item);
     if (static_cast<double>(item.width) > kMostOpen * pair.delta) return false;
     const ImageView& b = *pair.image_b;
-    const std::uint32_t face = work_.witness_of(item).b;
-    std::uint32_t from_behind = face;
-    double least = dot(normal, facing(pair, face));
-    if (least > kSquare) return false;
-    const Feature at = feature_at(b.region_triangles[face], in_image_of_b(pair, on_b));
-    double angles = angle_of(sector_at(b, face, at));
-    double mean = angles * least;
-    visit_around(b, face, at, [&](const Sector& sector) {
-      const double beside = dot(normal, facing(pair, sector.triangle));
+    const RegionTriangle& met = b.region_triangles[work_.witness_of(item).b];
+    const Vec3d of_met = pair.b_in_a.rotation * normal_of(met);
+    const double squarely = dot(normal, of_met);
+    if (squarely > 0 && squarely * squarely > kSquare * kSquare * squared_norm(of_met))
+      return false;
+    const Vec3d point = in_image_of_b(pair, on_b);
+    const Foot foot = foot_at(b, work_.witness_of(item).b, point);
+    std::uint32_t from_behind = foot.triangle;
+    double least = 1;
+    double angles = 0;
+    double mean = 0;
+    const auto see = [&](const Sector& sector) {
+      const double beside = dot(normal, facing(pair, sector.normal));
       const double angle = angle_of(sector);
       if (beside < least) {
         least = beside;
@@ -134,8 +139,10 @@ class Report {
       }
       angles += angle;
       mean += angle * beside;
-    });
-    return least < -kSquare && mean < -kLeast * angles && is_closed(b, b.region_triangles[face]) &&
+    };
+    see(sector_at(b, foot.triangle, foot.at));
+    visit_around(b, foot, point, see);
+    return least < -kSquare && mean < -kLeast * angles && is_closed(b, met) &&
            (item.width <= kClosed || sees_inside_of(pair, on_a, on_b, from_behind));
   }
 
@@ -162,11 +169,18 @@ class Report {
     return (1 / pair.scale_b) * to_b(pair, point);
   }
 
-  /// The outward normal of a triangle of b.
-  static Vec3d facing(const PairState& pair, std::uint32_t triangle) noexcept {
-    const Vec3d n = pair.b_in_a.rotation * normal_of(pair.image_b->region_triangles[triangle]);
+  /// The direction of an outward normal of b; 0 where that is.
+  static Vec3d facing(const PairState& pair, Vec3d of_b) noexcept {
+    const Vec3d n = pair.b_in_a.rotation * of_b;
     const double length = norm(n);
-    return length > 0 ? (1 / length) * n : Vec3d{1, 0, 0};
+    return length > 0 ? (1 / length) * n : Vec3d{};
+  }
+
+  /// Of a triangle of b at a point; any direction where it and all around it are slivers.
+  static Vec3d facing_at(const PairState& pair, std::uint32_t triangle, Vec3d on_b) noexcept {
+    const Foot foot = foot_at(*pair.image_b, triangle, in_image_of_b(pair, on_b));
+    const Vec3d n = facing(pair, normal_of(pair.image_b->region_triangles[foot.triangle]));
+    return squared_norm(n) > 0 ? n : Vec3d{1, 0, 0};
   }
 
   struct Felt {

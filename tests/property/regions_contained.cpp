@@ -183,6 +183,57 @@ TEST(RegionsContained, what_is_before_a_sharp_corner_is_outside) {
   }
 }
 
+/// The same with two triangles of no area along the edges from there to 1 and 3.
+bake::Mesh needles_at(const Vec3d (&edges)[3]) {
+  bake::Mesh m = corner_of(edges);
+  const bool turned = m.faces[0][1] == 1;
+  m.points.push_back({1e-17, 0, 0});
+  m.faces[2] = turned ? bake::Face{4, 3, 1} : bake::Face{4, 1, 3};
+  m.faces.push_back(turned ? bake::Face{0, 4, 1} : bake::Face{0, 1, 4});
+  m.faces.push_back(turned ? bake::Face{0, 3, 4} : bake::Face{0, 4, 3});
+  return m;
+}
+
+/// The same with one of no area along the edge to 1, whose middle is a corner of it.
+bake::Mesh cap_at(const Vec3d (&edges)[3]) {
+  bake::Mesh m = corner_of(edges);
+  const bool turned = m.faces[0][1] == 1;
+  m.points.push_back({0.5 * edges[0].x, 0.5 * edges[0].y, 0.5 * edges[0].z});
+  m.faces[0] = turned ? bake::Face{0, 4, 2} : bake::Face{0, 2, 4};
+  m.faces.push_back(turned ? bake::Face{4, 1, 2} : bake::Face{4, 2, 1});
+  m.faces.push_back(turned ? bake::Face{1, 4, 0} : bake::Face{1, 0, 4});
+  return m;
+}
+
+TEST(RegionsContained, triangles_without_area_do_not_tell_a_side) {
+  constexpr double kGap = 0.3 * kDelta;
+  const BakedBody tool(ball(4, 6, 0.1), kRegions);
+  std::mt19937 rng(5);
+  for (int body = 0; body < 60; ++body) {
+    const Vec3d edges[3] = {random_unit(rng), random_unit(rng), random_unit(rng)};
+    if (std::abs(dot(cross(edges[0], edges[1]), edges[2])) < 0.05) continue;
+    bake::Mesh mesh = body % 2 == 0 ? needles_at(edges) : cap_at(edges);
+    // Some place on the edge that they lie along, or its ends, becomes the origin.
+    const Vec3d place = 0.125 * (body / 2 % 9) * edges[0];
+    for (auto& [x, y, z] : mesh.points) {
+      x -= place.x;
+      y -= place.y;
+      z -= place.z;
+    }
+    const BakedBody slivers(std::move(mesh), kRegions);
+    BakedScene scene({tool.view, slivers.view}, {{0, 1}}, settings());
+    const PlacedTriangles fixed(slivers.mesh, {});
+    for (int i = 0; i < 20; ++i) {
+      const Pose poses[2] = {approach(tool.mesh, slivers.mesh, kGap, 3, random_unit(rng), {}), {}};
+      const TickResult r = tick_or_fail(*scene.engine, poses);
+      ASSERT_FALSE(r.contacts.empty()) << body << ' ' << i;
+      const double truth = distance_of(PlacedTriangles(tool.mesh, poses[0]), fixed);
+      EXPECT_NEAR(r.min_distance_m, truth, 1e-6) << body << ' ' << i;
+      for (const Contact& c : r.contacts) EXPECT_GT(c.distance_m, 0) << body << ' ' << i;
+    }
+  }
+}
+
 /// A search that ends early may leave the witness on the back of a wall that is thinner than its
 /// interval.
 TEST(RegionsContained, what_is_before_a_thin_wall_is_not_behind_it_while_its_interval_is_open) {

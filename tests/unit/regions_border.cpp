@@ -22,31 +22,70 @@ using Corners = std::array<std::uint32_t, 3>;
 /// The cube from -1 to 1; each side is a region of its own, of two triangles.
 class Cube {
  public:
-  explicit Cube(std::size_t triangles = 12) {
-    constexpr std::array<Corners, 12> kCorners{{{0, 2, 3},
-                                                {0, 3, 1},
-                                                {4, 5, 7},
-                                                {4, 7, 6},
-                                                {0, 1, 5},
-                                                {0, 5, 4},
-                                                {2, 6, 7},
-                                                {2, 7, 3},
-                                                {0, 4, 6},
-                                                {0, 6, 2},
-                                                {1, 3, 7},
-                                                {1, 7, 5}}};
-    for (std::uint32_t i = 0; i < triangles; ++i) {
+  explicit Cube(std::size_t triangles = 12)
+      : Cube(std::vector<Corners>(kTriangles.begin(), kTriangles.begin() + triangles), {}) {}
+
+  /// Corner 8 is where corner 0 is: between them two triangles of no area, 12 and 13, along the
+  /// edges from there to corners 1 and 2.
+  static Cube with_needles() {
+    std::vector<Corners> t(kTriangles.begin(), kTriangles.end());
+    t[0][0] = t[1][0] = 8;
+    t.push_back({2, 8, 0});
+    t.push_back({8, 1, 0});
+    return {t, {-1, -1, -1}};
+  }
+  /// Corner 8 is in the middle of the edge from corner 0 to 2, where a triangle of no area, 13,
+  /// lies between the lower side and the two triangles 9 and 12 of the wall.
+  static Cube with_cap() {
+    std::vector<Corners> t(kTriangles.begin(), kTriangles.end());
+    t[9] = {0, 6, 8};
+    t.push_back({8, 6, 2});
+    t.push_back({2, 0, 8});
+    return {t, {-1, 0, -1}};
+  }
+
+  /// The triangles around a point, without `triangle` itself.
+  std::multiset<std::uint32_t> around(std::uint32_t triangle, Vec3d point) const {
+    std::multiset<std::uint32_t> found;
+    visit_around(view, foot_at(view, triangle, point), point,
+                 [&](const Sector& s) { found.insert(s.triangle); });
+    return found;
+  }
+
+  ImageView view;
+
+ private:
+  static constexpr std::array<Corners, 12> kTriangles{{{0, 2, 3},
+                                                       {0, 3, 1},
+                                                       {4, 5, 7},
+                                                       {4, 7, 6},
+                                                       {0, 1, 5},
+                                                       {0, 5, 4},
+                                                       {2, 6, 7},
+                                                       {2, 7, 3},
+                                                       {0, 4, 6},
+                                                       {0, 6, 2},
+                                                       {1, 3, 7},
+                                                       {1, 7, 5}}};
+
+  Cube(const std::vector<Corners>& triangles, Vec3f eighth) {
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
       RegionTriangle t{};
       t.region = i / 2;
       for (std::uint32_t c = 0; c < 3; ++c) {
-        for (std::uint32_t k = 0; k < 3; ++k) {
-          t.corners[3 * c + k] = (kCorners[i][c] >> k & 1u) != 0 ? 1.0f : -1.0f;
-        }
+        const std::uint32_t at = triangles[i][c];
+        const Vec3f p = at == 8
+                            ? eighth
+                            : Vec3f{(at & 1u) != 0 ? 1.0f : -1.0f, (at & 2u) != 0 ? 1.0f : -1.0f,
+                                    (at & 4u) != 0 ? 1.0f : -1.0f};
+        t.corners[3 * c] = p.x;
+        t.corners[3 * c + 1] = p.y;
+        t.corners[3 * c + 2] = p.z;
         t.neighbours[c] = kNone;
-        for (std::uint32_t j = 0; j < triangles; ++j) {
+        for (std::uint32_t j = 0; j < triangles.size(); ++j) {
           for (std::uint32_t e = 0; e < 3; ++e) {
-            if (kCorners[j][e] == kCorners[i][(c + 1) % 3] &&
-                kCorners[j][(e + 1) % 3] == kCorners[i][c]) {
+            if (triangles[j][e] == triangles[i][(c + 1) % 3] &&
+                triangles[j][(e + 1) % 3] == triangles[i][c]) {
               t.neighbours[c] = j;
             }
           }
@@ -57,16 +96,6 @@ class Cube {
     view.region_triangles = triangles_;
   }
 
-  /// The triangles around a point, without `triangle` itself.
-  std::multiset<std::uint32_t> around(std::uint32_t triangle, Vec3d point) const {
-    std::multiset<std::uint32_t> found;
-    visit_around(view, triangle, point, [&](const Sector& s) { found.insert(s.triangle); });
-    return found;
-  }
-
-  ImageView view;
-
- private:
   std::vector<RegionTriangle> triangles_;
 };
 
@@ -95,10 +124,47 @@ TEST(RegionsBorder, around_a_corner_of_an_open_surface_both_ways_are_gone) {
   EXPECT_EQ(open.around(5, {-1, -1, -1}), (std::multiset<std::uint32_t>{0, 1, 4, 8}));
 }
 
+TEST(RegionsBorder, triangles_of_no_area_are_gone_over) {
+  const Cube cube = Cube::with_needles();
+  const Vec3d on_edge{-1, 0.3, -1};
+  const Vec3d at_corner{-1, -1, -1};
+  EXPECT_EQ(cube.around(kBelow, on_edge), (std::multiset<std::uint32_t>{9}));
+  EXPECT_EQ(cube.around(9, on_edge), (std::multiset<std::uint32_t>{kBelow}));
+  EXPECT_EQ(cube.around(kBelow, at_corner), (std::multiset<std::uint32_t>{1, 4, 5, 8, 9}));
+  EXPECT_EQ(cube.around(5, at_corner), (std::multiset<std::uint32_t>{0, 1, 4, 8, 9}));
+  // What lies on one of them lies on what is beside it.
+  const std::uint32_t beside = foot_at(cube.view, 12, on_edge).triangle;
+  EXPECT_TRUE(beside == kBelow || beside == 9);
+  EXPECT_EQ(cube.around(12, on_edge), (std::multiset<std::uint32_t>{beside == 9 ? kBelow : 9}));
+  EXPECT_EQ(cube.around(13, at_corner).size(), 5u);
+}
+
+TEST(RegionsBorder, edges_that_end_in_the_middle_of_another_are_gone_over) {
+  const Cube cube = Cube::with_cap();
+  EXPECT_EQ(cube.around(kBelow, {-1, 0.3, -1}), (std::multiset<std::uint32_t>{12}));
+  EXPECT_EQ(cube.around(kBelow, {-1, -0.3, -1}), (std::multiset<std::uint32_t>{9}));
+  EXPECT_EQ(cube.around(9, {-1, 0, -1}), (std::multiset<std::uint32_t>{kBelow, 12}));
+  EXPECT_EQ(cube.around(12, {-1, 0, -1}), (std::multiset<std::uint32_t>{kBelow, 9}));
+  EXPECT_EQ(cube.around(kBelow, {-1, -1, -1}), (std::multiset<std::uint32_t>{1, 4, 5, 8, 9}));
+}
+
+TEST(RegionsBorder, surface_without_faces_has_nothing_around) {
+  // Three triangles of no area across each other's edges: the way over them goes round.
+  Cube cube;
+  std::vector<RegionTriangle> flat(3);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    for (std::uint32_t k = 0; k < 3; ++k) flat[i].neighbours[k] = (i + 1) % 3;
+    flat[i].corners[0] = 1;
+  }
+  cube.view.region_triangles = flat;
+  EXPECT_TRUE(cube.around(0, {0.5, 0, 0}).empty());
+  EXPECT_EQ(foot_at(cube.view, 0, {0.5, 0, 0}).triangle, 0u);
+}
+
 TEST(RegionsBorder, sectors_lead_counter_clockwise_over_their_triangles) {
   const Cube cube;
   for (const Vec3d point : {Vec3d{-1, -1, -1}, Vec3d{-1, 0.3, -1}}) {
-    visit_around(cube.view, kBelow, point, [&](const Sector& s) {
+    visit_around(cube.view, foot_at(cube.view, kBelow, point), point, [&](const Sector& s) {
       const Vec3d normal = normal_of(cube.view.region_triangles[s.triangle]);
       EXPECT_NEAR(dot(s.from, normal), 0, 1e-12);
       EXPECT_NEAR(dot(s.to, normal), 0, 1e-12);
