@@ -150,15 +150,16 @@ struct Foot {
 /// Calls visit(Sector) for every other triangle that holds the feature of a foot: the one across
 /// its edge, or those around its corner, each way up to a border of the surface and kMostAround in
 /// all. Slivers are gone over as if they were not there.
+/// @return false where that has ended it
 /// O(kMostAround)
 template <typename Visit>
-void visit_around(const ImageView& image, const Foot& foot, Vec3d point, Visit visit) noexcept {
-  if (foot.at.kind == Feature::Kind::face) return;
+bool visit_around(const ImageView& image, const Foot& foot, Vec3d point, Visit visit) noexcept {
+  if (foot.at.kind == Feature::Kind::face) return true;
   if (foot.at.kind == Feature::Kind::edge) {
     const Across next = off_slivers(image, across(image, foot.triangle, foot.at.index), point);
-    if (next.triangle == image::kNone || next.triangle == foot.triangle) return;
+    if (next.triangle == image::kNone || next.triangle == foot.triangle) return true;
     visit(sector_at(image, next.triangle, {Feature::Kind::edge, next.edge}));
-    return;
+    return true;
   }
   constexpr double kOne2 = 1e-12;  // corners that are no farther apart are one, see normal_of()
   std::uint32_t left = kMostAround;
@@ -168,7 +169,7 @@ void visit_around(const ImageView& image, const Foot& foot, Vec3d point, Visit v
     for (; left > 0; --left) {
       const Across next = across(image, here, onwards ? apex : (apex + 2) % 3);
       if (next.triangle == image::kNone) break;
-      if (next.triangle == foot.triangle) return;
+      if (next.triangle == foot.triangle) return true;
       here = next.triangle;
       apex = onwards ? (next.edge + 1) % 3 : next.edge;
       const Sector sector = sector_at(image, here, {Feature::Kind::corner, apex});
@@ -183,6 +184,7 @@ void visit_around(const ImageView& image, const Foot& foot, Vec3d point, Visit v
       }
     }
   }
+  return left > 0;
 }
 
 }  // namespace palpate::regions

@@ -111,7 +111,8 @@ class Report {
   /// thinner wall or a blade's edge: then the point of a has to see the back of a face, too. Not
   /// told where it is so open that the depth would be a guess; nor from a surface that is open to
   /// its back. Most contacts meet their witness's face from before it and are told at once; so is,
-  /// wrongly, what is inside just beyond the tip of a pit as sharp as a needle.
+  /// wrongly, what is inside just beyond the tip of a pit as sharp as a needle, or of more than
+  /// kMostAround triangles.
   bool is_behind(const Active& item, Vec3d on_a, Vec3d on_b, Vec3d normal) noexcept {
     constexpr double kSquare = 0.5;    // where none is met so squarely, blades meet
     constexpr double kLeast = 1e-3;    // of the mean: less is rounding, on a blade's edge
@@ -141,7 +142,8 @@ class Report {
       mean += angle * beside;
     };
     see(sector_at(b, foot.triangle, foot.at));
-    visit_around(b, foot, point, see);
+    // Half of a tip's faces lean to one side: what is before it would seem to be behind the others.
+    if (!visit_around(b, foot, point, see)) return false;
     return least < -kSquare && mean < -kLeast * angles && is_closed(b, met) &&
            (item.width <= kClosed || sees_inside_of(pair, on_a, on_b, from_behind));
   }

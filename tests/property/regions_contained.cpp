@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "rt_core/engine.hpp"
@@ -230,6 +231,41 @@ TEST(RegionsContained, triangles_without_area_do_not_tell_a_side) {
       const double truth = distance_of(PlacedTriangles(tool.mesh, poses[0]), fixed);
       EXPECT_NEAR(r.min_distance_m, truth, 1e-6) << body << ' ' << i;
       for (const Contact& c : r.contacts) EXPECT_GT(c.distance_m, 0) << body << ' ' << i;
+    }
+  }
+}
+
+/// A tip in the origin.
+bake::Mesh cone(std::uint32_t sides, double radius, double height) {
+  bake::Mesh m;
+  m.points = {{0, 0, 0}, {0, 0, -height}};
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / sides;
+    m.points.push_back({radius * std::cos(angle), radius * std::sin(angle), -height});
+  }
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const std::uint32_t here = 2 + i, next = 2 + (i + 1) % sides;
+    m.faces.push_back({0, here, next});
+    m.faces.push_back({1, next, here});
+  }
+  return m;
+}
+
+TEST(RegionsContained, what_is_before_a_tip_of_many_triangles_is_outside) {
+  constexpr double kGap = 0.3 * kDelta;
+  constexpr double kRadius = 0.3;
+  const BakedBody tool(ball(4, 6, 0.1), kRegions);
+  for (const std::uint32_t sides : {60u, 100u, 300u}) {
+    const BakedBody tip(cone(sides, kRadius, 1), kRegions);
+    BakedScene scene({tool.view, tip.view}, {{0, 1}}, settings());
+    std::mt19937 rng(3);
+    for (int i = 0; i < 40; ++i) {
+      const Vec3d out = random_unit(rng);
+      if (out.z < kRadius * std::hypot(out.x, out.y)) continue;  // the tip is not the nearest
+      const Pose poses[2] = {approach(tool.mesh, tip.mesh, kGap, 1, out, {}), {}};
+      const TickResult r = tick_or_fail(*scene.engine, poses);
+      ASSERT_FALSE(r.contacts.empty()) << sides << ' ' << i;
+      for (const Contact& c : r.contacts) EXPECT_GT(c.distance_m, 0) << sides << ' ' << i;
     }
   }
 }
