@@ -124,18 +124,22 @@ Side side_of(const Kernels& kernels, const ImageView& body, Vec3d point, SearchS
 
 bool in_sight(const Kernels& kernels, const ImageView& body, Vec3d from, Vec3d to,
               SearchScratch& scratch, Pace& pace) noexcept {
-  constexpr double kWay = 0.999;
-  const double length = kWay * norm(to - from);
+  constexpr double kEnd = 1e-3;  // of the way
+  const double length = norm(to - from);
   if (!(length > 0)) return true;
-  const Vec3d way = (kWay / length) * (to - from);
+  const double end = (1 - kEnd) * length;
+  const double beyond = (1 + kEnd) * length;
+  const Vec3d way = (1 / length) * (to - from);
   const Vec3d side = across(way);
   const Mat3d axes{side, cross(way, side), way};
   bool met = false;
-  const Box box = box_along(from, axes, length);
+  const Box box = box_along(from, axes, beyond);
   const bool complete =
       visit_touched(kernels, body, box, scratch, pace, [&](const RegionTriangle& t) {
         const Meeting m = meet(t, from, axes);
-        met = m.passed && m.way >= 0 && m.way < length;
+        const bool before_end = m.way >= 0 && m.way < end;
+        const bool enters = !m.edge && !m.outwards && m.way >= end && m.way < beyond;
+        met = m.passed && (before_end || enters);
         return !met;
       });
   return complete && !met;

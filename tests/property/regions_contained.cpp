@@ -273,27 +273,32 @@ TEST(RegionsContained, what_is_before_a_tip_of_many_triangles_is_outside) {
 /// A search that ends early may leave the witness on the back of a wall that is thinner than its
 /// interval.
 TEST(RegionsContained, what_is_before_a_thin_wall_is_not_behind_it_while_its_interval_is_open) {
+  constexpr double kThinnest = 1e-7;  // to rounding both sides are one
   const Small small;
-  const BakedBody wall(box(1, 1, 0.02 * kDelta), kRegions);
-  BakedScene scene({small.body.view, wall.view}, {{0, 1}}, settings());
-  const Vec3d at{0.1, 0.2, 0.1 + 0.3 * kDelta};
-  const TickResult before = tick_at(scene, at);
-  ASSERT_GT(before.min_distance_m, 0);
-  regions::QueryMemory& memory = scene.engine->regions;
-  std::uint32_t back = 0;
-  while (regions::normal_of(wall.view.region_triangles[back]).z >= 0) ++back;
-  for (regions::RegionPairs& kept : memory.kept) kept.near.count = 0;
-  for (regions::RegionState& state : memory.states) {
-    state.rest = state.lower = static_cast<float>(before.min_distance_m / memory.pairs[0].unit_m);
+  for (const double thickness : {0.02 * kDelta, kThinnest}) {
+    const BakedBody wall(box(1, 1, thickness), kRegions);
+    BakedScene scene({small.body.view, wall.view}, {{0, 1}}, settings());
+    const Vec3d at{0.1, 0.2, 0.1 + 0.3 * kDelta};
+    const TickResult before = tick_at(scene, at);
+    ASSERT_GT(before.min_distance_m, 0);
+    regions::QueryMemory& memory = scene.engine->regions;
+    std::uint32_t back = 0;
+    while (regions::normal_of(wall.view.region_triangles[back]).z >= 0) ++back;
+    for (regions::RegionPairs& kept : memory.kept) kept.near.count = 0;
+    for (regions::RegionState& state : memory.states) {
+      state.lower = static_cast<float>(before.min_distance_m / memory.pairs[0].unit_m) - 1e-5f;
+      state.rest = state.lower;
+    }
+    for (regions::Witness& witness : memory.witnesses) witness.b = back;
+    const Pose poses[2] = {{at, {}}, {}};
+    const TickResult r = tick_or_fail(*scene.engine, poses, {.units = 1});
+    ASSERT_FALSE(r.contacts.empty());
+    EXPECT_GE(r.min_distance_m, before.min_distance_m - 1e-6);
+    EXPECT_GT(r.wrench.force_N.z, 0);
+    if (thickness == kThinnest) continue;  // nothing is inside
+    tick_at(scene, {0, 0, 2});
+    expect_pushed_out(tick_at(scene, at - Vec3d{0, 0, 0.3 * kDelta + 0.001}), {0, 0, 1});
   }
-  for (regions::Witness& witness : memory.witnesses) witness.b = back;
-  const Pose poses[2] = {{at, {}}, {}};
-  const TickResult r = tick_or_fail(*scene.engine, poses, {.units = 1});
-  ASSERT_FALSE(r.contacts.empty());
-  EXPECT_GT(r.min_distance_m, before.min_distance_m);
-  EXPECT_GT(r.wrench.force_N.z, 0);
-  tick_at(scene, {0, 0, 2});
-  expect_pushed_out(tick_at(scene, at - Vec3d{0, 0, 0.3 * kDelta + 0.001}), {0, 0, 1});
 }
 
 /// It may also leave it at a corner that is not the nearest place and that the point sees from
