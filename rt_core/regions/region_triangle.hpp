@@ -40,11 +40,14 @@ inline bool is_sliver(const image::RegionTriangle& t) noexcept {
   return squared_norm(normal_of(t)) == 0;
 }
 
-/// False where the surface may have been met from its back: it is open, or crosses itself.
+/// False where the surface may have been met from its back: it is open, or may cross itself there.
+/// Of what crosses itself somewhere, triangles that do are pieces of their own (docs/FORMAT.md).
 inline bool is_closed(const ImageView& image, const image::RegionTriangle& t) noexcept {
   const auto open = static_cast<std::uint32_t>(image::HeaderFlag::open);
   const auto back_open = static_cast<std::uint32_t>(image::PieceFlag::back_open);
-  return (image.header->flags & open) == 0 && (image.pieces[t.piece].flags & back_open) == 0;
+  const image::Piece& piece = image.pieces[t.piece];
+  const bool may_cross = (piece.flags & back_open) != 0 && piece.triangles == 1;
+  return (image.header->flags & open) == 0 && !may_cross;
 }
 
 }  // namespace palpate::regions

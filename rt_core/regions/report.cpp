@@ -131,7 +131,9 @@ class Report {
     double least = 1;
     double angles = 0;
     double mean = 0;
+    bool closed = is_closed(b, met);
     const auto see = [&](const Sector& sector) {
+      closed = closed && is_closed(b, b.region_triangles[sector.triangle]);
       const double beside = dot(normal, facing(pair, sector.normal));
       const double angle = angle_of(sector);
       if (beside < least) {
@@ -144,7 +146,7 @@ class Report {
     see(sector_at(b, foot.triangle, foot.at));
     // Half of a tip's faces lean to one side: what is before it would seem to be behind the others.
     if (!visit_around(b, foot, point, see)) return false;
-    return least < -kSquare && mean < -kLeast * angles && is_closed(b, met) &&
+    return least < -kSquare && mean < -kLeast * angles && closed &&
            (item.width <= kClosed || sees_inside_of(pair, on_a, on_b, from_behind));
   }
 

@@ -270,6 +270,31 @@ TEST(RegionsContained, what_is_before_a_tip_of_many_triangles_is_outside) {
   }
 }
 
+/// The bottom of a box that is pressed into a block crosses nothing.
+TEST(RegionsContained, block_that_crosses_itself_elsewhere_has_an_inside) {
+  constexpr double kDeep = 0.5 * kDelta;
+  const BakedBody tool(quartered(box(0.1, 0.1, 0.1), 3), kRegions);
+  bake::Mesh mesh = quartered(box(1, 1, 1), 4);
+  for (bake::Point& p : mesh.points) {
+    if (p == bake::Point{0.5, 0.5, -1}) p[2] = 1.2;  // through the upper side
+  }
+  const BakedBody block(std::move(mesh), kRegions);
+  ASSERT_NE(block.view.header->source_crossings, 0u);
+  BakedScene scene({tool.view, block.view}, {{0, 1}}, settings());
+  for (const Vec3d at : {Vec3d{-0.51, -0.52, 1.1}, Vec3d{-0.73, 0.13, 1.1}}) {
+    const Pose in[2] = {{at - Vec3d{0, 0, kDeep}, turn({0.01, 0.02, 0.3})}, {}};
+    const TickResult inside = tick_or_fail(*scene.engine, in);
+    ASSERT_GT(inside.contacts.size(), 4u);
+    for (const Contact& c : inside.contacts) EXPECT_EQ(c.distance_m < 0, c.point_a_m.z < 1.001);
+    EXPECT_GT(inside.wrench.force_N.z, 0);
+    const Pose out[2] = {{at + Vec3d{0, 0, kDeep}, turn({0.01, 0.02, 0.3})}, {}};
+    const TickResult outside = tick_or_fail(*scene.engine, out);
+    ASSERT_FALSE(outside.contacts.empty());
+    for (const Contact& c : outside.contacts) EXPECT_GT(c.distance_m, 0);
+    EXPECT_GT(outside.wrench.force_N.z, 0);
+  }
+}
+
 /// A search that ends early may leave the witness on the back of a wall that is thinner than its
 /// interval.
 TEST(RegionsContained, what_is_before_a_thin_wall_is_not_behind_it_while_its_interval_is_open) {
