@@ -30,9 +30,9 @@ struct Containment {
 [[nodiscard]] Side side_of(const Kernels& kernels, const ImageView& body, Vec3d point,
                            SearchScratch& scratch, Pace& pace) noexcept;
 
-/// Whether a way meets no triangle of a surface. It may end on the surface, seen from inside: within
-/// a thousandth of its end only triangles count through which it would go in, as those of a wall
-/// without thickness. False too where the pace ends before that is known.
+/// Whether a way meets no triangle of a surface. It may end on the surface, seen from inside:
+/// within a thousandth of its end only triangles count through which it would go in, as those of a
+/// wall without thickness. False too where the pace ends before that is known.
 /// @param from, to  image coordinates of the body
 /// Cost: a unit for each node whose box the way passes through.
 [[nodiscard]] bool in_sight(const Kernels& kernels, const ImageView& body, Vec3d from, Vec3d to,
