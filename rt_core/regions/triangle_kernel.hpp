@@ -37,13 +37,28 @@ PALPATE_LANES Floats inverse(Floats v) noexcept {
   return v > Floats{} ? all(1.0f) / positive : Floats{};
 }
 
+/// A needle's normal is the small difference of large products: their rounding tilts it along the
+/// longest edge, and so moves the plane far from the corner that it is laid through.
+PALPATE_LANES Vectors upright(Vectors normal, const Triangles& t) noexcept {
+  Vectors longest = t.edge[0];
+  Floats inverse2 = t.edge_inverse[0];
+  Floats most2 = t.edge_squared[0];
+  for (int i = 1; i < 3; ++i) {
+    const Ints longer = t.edge_squared[i] > most2;
+    longest = select(longer, t.edge[i], longest);
+    inverse2 = longer ? t.edge_inverse[i] : inverse2;
+    most2 = most(t.edge_squared[i], most2);
+  }
+  return normal - dot(normal, longest) * inverse2 * longest;
+}
+
 PALPATE_LANES void complete(Triangles& t) noexcept {
   for (int i = 0; i < 3; ++i) {
     t.edge[i] = t.corner[(i + 1) % 3] - t.corner[i];
     t.edge_squared[i] = dot(t.edge[i], t.edge[i]);
     t.edge_inverse[i] = inverse(t.edge_squared[i]);
   }
-  t.normal = cross(t.edge[0], t.edge[1]);
+  t.normal = upright(cross(t.edge[0], t.edge[1]), t);
   t.normal_inverse = inverse(dot(t.normal, t.normal));
   for (int i = 0; i < 3; ++i) t.inward[i] = cross(t.normal, t.edge[i]);
 }

@@ -477,6 +477,37 @@ TEST(RegionKernels, Witnesses_are_as_far_apart_as_the_triangles) {
   }
 }
 
+/// Where the lever from the corners to the nearest point is longest.
+TEST(RegionKernels, Witnesses_above_the_middle_of_a_needle_are_right_to_a_millionth) {
+  constexpr double kHeight = 0.01;
+  Random random(6);
+  const auto scratch = std::make_unique<KernelScratch>();
+  for (int round = 0; round < 1000; ++round) {
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      const Mat3d turn = random_rotation(random);
+      const double width = std::pow(10.0, uniform(random, -4, -2));
+      const Vec3d tip{uniform(random, -0.3, 0.3), 0.1 * width, kHeight};
+      const Vec3d a[3] = {tip, tip + Vec3d{0.2, 0.1, 0.3}, tip + Vec3d{-0.1, 0.2, 0.3}};
+      const Vec3d b[3] = {{-0.5, 0, 0}, {0.5, 0, 0}, {-0.5, width, 0}};
+      for (int c = 0; c < 3; ++c) {
+        const Vec3d at_a = turn * (a[c] - tip), at_b = turn * (b[c] - tip);
+        const double rows_a[3] = {at_a.x, at_a.y, at_a.z}, rows_b[3] = {at_b.x, at_b.y, at_b.z};
+        for (int k = 0; k < 3; ++k) {
+          scratch->lanes.a[3 * c + k][i] = static_cast<float>(rows_a[k]);
+          scratch->lanes.b[3 * c + k][i] = static_cast<float>(rows_b[k]);
+        }
+      }
+    }
+    WitnessLanes found;
+    best_kernels().witnesses(*scratch, found);
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      const Vec3d apart{double(found.apart[0][i]), double(found.apart[1][i]),
+                        double(found.apart[2][i])};
+      ASSERT_NEAR(norm(apart), kHeight, 1e-6) << round;
+    }
+  }
+}
+
 TEST(RegionKernels, Tables_give_the_same_bits) {
   Random random(2);
   const auto scratch = std::make_unique<KernelScratch>();
