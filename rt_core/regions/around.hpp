@@ -161,7 +161,6 @@ bool visit_around(const ImageView& image, const Foot& foot, Vec3d point, Visit v
     visit(sector_at(image, next.triangle, {Feature::Kind::edge, next.edge}));
     return true;
   }
-  constexpr double kOne2 = 1e-12;  // corners that are no farther apart are one, see normal_of()
   std::uint32_t left = kMostAround;
   for (const bool onwards : {true, false}) {
     std::uint32_t here = foot.triangle;
@@ -175,7 +174,7 @@ bool visit_around(const ImageView& image, const Foot& foot, Vec3d point, Visit v
       const Sector sector = sector_at(image, here, {Feature::Kind::corner, apex});
       if (!sector.is_sliver()) {
         visit(sector);
-      } else if (squared_norm(onwards ? sector.from : sector.to) <= kOne2) {
+      } else if (squared_norm(onwards ? sector.from : sector.to) <= kThin2) {
         apex = (apex + (onwards ? 1 : 2)) % 3;
       } else if (dot(sector.from, sector.to) < 0) {  // the corner is on the edge beyond it, too
         const Across over = off_slivers(image, across(image, here, (apex + 1) % 3), point);

@@ -16,10 +16,13 @@ inline Vec3d corner(const image::RegionTriangle& t, std::uint32_t i, double scal
                        static_cast<double>(t.corners[3 * i + 2])};
 }
 
+/// Lengths that rounding may make of nothing, squared, of the body's radius: corners are off by up
+/// to 6e-8.
+inline constexpr double kThin2 = 1e-12;
+
 /// Outward, of twice the triangle's area, in image coordinates. 0 of a sliver: so thin that the
 /// rounding of its corners decides where it faces.
 inline Vec3d normal_of(const image::RegionTriangle& t) noexcept {
-  constexpr double kThin2 = 1e-12;  // squared, of the body's radius: corners are off by up to 6e-8
   constexpr double kMostLength2 = 9;
   const Vec3d p = corner(t, 0, 1);
   const Vec3d to_next = corner(t, 1, 1) - p;

@@ -123,8 +123,8 @@ class Report {
     const RegionTriangle& met = b.region_triangles[work_.witness_of(item).b];
     const Vec3d of_met = pair.b_in_a.rotation * normal_of(met);
     const double squarely = dot(normal, of_met);
-    if (squarely > 0 && squarely * squarely > kSquare * kSquare * squared_norm(of_met))
-      return false;
+    const double least2 = kSquare * kSquare * squared_norm(of_met);
+    if (squarely > 0 && squarely * squarely > least2) return false;
     const Vec3d point = in_image_of_b(pair, on_b);
     const Foot foot = foot_at(b, work_.witness_of(item).b, point);
     std::uint32_t from_behind = foot.triangle;

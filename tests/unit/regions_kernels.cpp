@@ -446,6 +446,15 @@ TEST(RegionKernels, BoxTest_keeps_the_least_of_what_was_passed_over) {
   EXPECT_EQ(test.passed[2], 7.0f);
 }
 
+/// Corner c of the two triangles of a lane.
+void put_corners(Vec3d a, Vec3d b, int c, std::uint32_t lane, TriangleLanes& out) {
+  const double rows_a[3] = {a.x, a.y, a.z}, rows_b[3] = {b.x, b.y, b.z};
+  for (int k = 0; k < 3; ++k) {
+    out.a[3 * c + k][lane] = static_cast<float>(rows_a[k]);
+    out.b[3 * c + k][lane] = static_cast<float>(rows_b[k]);
+  }
+}
+
 TEST(RegionKernels, Witnesses_are_as_far_apart_as_the_triangles) {
   Random random(4);
   const auto scratch = std::make_unique<KernelScratch>();
@@ -453,13 +462,8 @@ TEST(RegionKernels, Witnesses_are_as_far_apart_as_the_triangles) {
     Pairs pairs = random_pairs(random);
     for (std::uint32_t i = 0; i < kBatch; ++i) {
       for (int c = 0; c < 3; ++c) {
-        const Vec3d a = mapped(pairs.map, corner(pairs.a[i], c)) - corner(pairs.b[i], 0);
-        const Vec3d b = corner(pairs.b[i], c) - corner(pairs.b[i], 0);
-        const double rows_a[3] = {a.x, a.y, a.z}, rows_b[3] = {b.x, b.y, b.z};
-        for (int k = 0; k < 3; ++k) {
-          scratch->lanes.a[3 * c + k][i] = static_cast<float>(rows_a[k]);
-          scratch->lanes.b[3 * c + k][i] = static_cast<float>(rows_b[k]);
-        }
+        put_corners(mapped(pairs.map, corner(pairs.a[i], c)) - corner(pairs.b[i], 0),
+                    corner(pairs.b[i], c) - corner(pairs.b[i], 0), c, i, scratch->lanes);
       }
     }
     WitnessLanes found;
@@ -490,12 +494,7 @@ TEST(RegionKernels, Witnesses_above_the_middle_of_a_needle_are_right_to_a_millio
       const Vec3d a[3] = {tip, tip + Vec3d{0.2, 0.1, 0.3}, tip + Vec3d{-0.1, 0.2, 0.3}};
       const Vec3d b[3] = {{-0.5, 0, 0}, {0.5, 0, 0}, {-0.5, width, 0}};
       for (int c = 0; c < 3; ++c) {
-        const Vec3d at_a = turn * (a[c] - tip), at_b = turn * (b[c] - tip);
-        const double rows_a[3] = {at_a.x, at_a.y, at_a.z}, rows_b[3] = {at_b.x, at_b.y, at_b.z};
-        for (int k = 0; k < 3; ++k) {
-          scratch->lanes.a[3 * c + k][i] = static_cast<float>(rows_a[k]);
-          scratch->lanes.b[3 * c + k][i] = static_cast<float>(rows_b[k]);
-        }
+        put_corners(turn * (a[c] - tip), turn * (b[c] - tip), c, i, scratch->lanes);
       }
     }
     WitnessLanes found;
