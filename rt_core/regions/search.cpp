@@ -6,6 +6,7 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/regions/named_box.hpp"
+#include "rt_core/regions/region_state.hpp"
 
 namespace palpate::regions {
 namespace {
@@ -16,8 +17,10 @@ using image::RegionTriangle;
 constexpr float kFar = std::numeric_limits<float>::max();
 
 /// A distance after a motion, at least; of eight roundings at most.
+/// @param moved  with kMotionSlack: where it is that alone, everything is to the bit where it was
 float lessened(float distance, float moved) noexcept {
   constexpr float kRounded = 1 - 0x1p-21f;
+  if (moved <= static_cast<float>(kMotionSlack)) return distance;
   const float left = distance * kRounded - moved;
   return left > 0 ? left : 0;
 }
@@ -108,9 +111,10 @@ class Search {
       scratch_.batch_b[i] = c.b;
       scratch_.batch_squared[i] = lessened_squared(c.squared, moved);
     }
-    for (std::uint32_t i = 0; i < left_->near.count; ++i) {
-      const Witness& w = left_->near.pairs[i];
-      keep({w.a, w.b, lessened(w.distance, moved)});
+    seen_before_ = left_->near.count;
+    for (std::uint32_t i = 0; i < seen_before_; ++i) {
+      Witness& pair = left_->near.pairs[i];
+      pair.distance = lessened(pair.distance, moved);
     }
     lower_threshold();
     return finish();
@@ -136,9 +140,13 @@ class Search {
   };
 
   Bounds finish() noexcept {
-    while (size_ > 0 || pending_ > 0) {
+    while (size_ > 0 || pending_ > 0 || seen_before_ > 0) {
       if (crowded_) return given_up();
       if (!pace_.go_on() || has_first()) return interrupted();
+      if (size_ == 0 && seen_before_ > 0) {
+        see_again(left_->near.pairs[--seen_before_]);
+        continue;
+      }
       if (size_ == 0) {
         flush();
         continue;
@@ -152,6 +160,16 @@ class Search {
     }
     out_.rest = proved(passed_over());
     return out_;
+  }
+
+  /// A pair that was kept before the bodies moved. Last of all, for where it is now is of interest
+  /// only if it may be nearer than the best.
+  void see_again(const Witness& pair) noexcept {
+    if (pair.distance < upper() - kAsNear) {
+      add_pair(pair.a, pair.b, pair.distance * pair.distance);
+    } else {
+      keep(pair);
+    }
   }
 
   bool has_first() const noexcept { return reach_.first && out_.best.nearer_than(reach_.limit); }
@@ -311,6 +329,12 @@ class Search {
   static float proved(float bound) noexcept { return bound > kRounding ? bound - kRounding : 0; }
 
   Bounds interrupted() noexcept {
+    float not_again = kFar;
+    while (seen_before_ > 0) {
+      const Witness& pair = left_->near.pairs[--seen_before_];
+      not_again = pair.distance < not_again ? pair.distance : not_again;
+      keep(pair);
+    }
     float least = threshold_squared_;
     for (std::uint32_t i = 0; i < size_; ++i) {
       least = scratch_.stack[i].squared < least ? scratch_.stack[i].squared : least;
@@ -318,7 +342,8 @@ class Search {
     for (std::uint32_t i = 0; i < pending_; ++i) {
       least = scratch_.batch_squared[i] < least ? scratch_.batch_squared[i] : least;
     }
-    out_.rest = proved(sqrt_of(least));
+    const float open = sqrt_of(least);
+    out_.rest = proved(open < not_again ? open : not_again);
     out_.complete = false;
     if (left_ != nullptr) leave();
     return out_;
@@ -362,6 +387,7 @@ class Search {
   BoxTest test_;  // of the children looked at last
   std::uint32_t size_ = 0;
   std::uint32_t pending_ = 0;
+  std::uint32_t seen_before_ = 0;  // of left_->near: those not seen again yet
   const levels::PairState* pair_ = nullptr;
   CrossingList* crossings_ = nullptr;  // null: distances are asked for
 };

@@ -196,8 +196,9 @@ Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scr
               Remainder* left = nullptr) noexcept;
 
 /// Goes on with a search at the present poses. As search(), but what was seen before is not seen
-/// again: complete, `rest` may be less by what that has come nearer since. The distances in
-/// scratch.near of pairs that were kept before are bounds from below.
+/// again, unless it was kept and may be nearer than the best by now: complete, `rest` may be less
+/// by what has come nearer since. The distances in scratch.near of pairs that were kept before are
+/// bounds from below; as long as they have not all been looked at, `rest` is no more than these.
 /// @param reach  its course ends where that of the search before did
 /// @param moved  how far the region is off that course, at most (moved_since()), in units
 /// @param left   of it; where this is ended too, what is left now

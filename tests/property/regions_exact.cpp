@@ -10,6 +10,7 @@
 #include "rt_core/regions/region_state.hpp"
 #include "rt_core/regions/sweep.hpp"
 #include "tests/support/brute_force.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/support/placements.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -194,6 +195,15 @@ std::vector<double> truth_in_units(const Pose& pose, double unit_m) {
                                                fixed, std::numeric_limits<double>::max());
   for (double& d : truth) d /= unit_m;
   return truth;
+}
+
+double distance_of(std::uint32_t region, const Pose& pose, const PlacedTriangles& fixed) {
+  const PlacedTriangles moved(bodies().a.mesh, pose);
+  double least = std::numeric_limits<double>::max();
+  for (const image::RegionTriangle& t : bodies().a.view.region_triangles) {
+    if (t.region == region) least = distance_from(moved, t.source, fixed, least);
+  }
+  return least;
 }
 
 const Pose kNear{{1.72, 0.2, 0.3}, turn({0.3, 0.2, -0.4})};
@@ -428,6 +438,30 @@ TEST(RegionSearch, goes_on_with_true_bounds_while_the_bodies_move) {
       };
       search_in_pieces(at, region, {2.0f, 0.02f}, 20, motion, check);
     }
+  }
+  EXPECT_GT(in_pieces, 20);
+}
+
+TEST(RegionSearch, what_was_kept_before_the_bodies_moved_is_measured_where_it_is_now) {
+  std::mt19937 rng(12);
+  int in_pieces = 0;
+  const PlacedTriangles fixed(bodies().b.mesh, {});
+  for (int run = 0; run < effort(200, 20); ++run) {
+    const std::uint32_t region = static_cast<std::uint32_t>(run) %
+                                 static_cast<std::uint32_t>(bodies().a.view.regions.size());
+    Pose pose = kNear;
+    SearchedPair at(pose);
+    const Vec3d step = 5e-3 * random_unit(rng);
+    const auto motion = [&](int) {
+      pose.position_m += step;
+      return pose;
+    };
+    const auto check = [&](int i, const regions::Bounds& found) {
+      in_pieces += i > 0 ? 1 : 0;
+      const double d = distance_of(region, pose, fixed) / at.pair.unit_m;
+      EXPECT_GE(d, double(std::min(found.best.distance, found.rest)) - kRounding) << region;
+    };
+    search_in_pieces(at, region, {2.0f, 0.1f}, 10, motion, check);
   }
   EXPECT_GT(in_pieces, 20);
 }
