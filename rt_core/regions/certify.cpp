@@ -6,9 +6,10 @@ namespace {
 
 using levels::PairState;
 
-/// What is known of a region's depth.
+/// What is known of a region's depth. Float's delta may be the larger by rounding.
 double depth_of(const Work& work, const Active& item) noexcept {
-  return work.pair_of(item).delta - static_cast<double>(work.upper_of(item));
+  const double depth = work.pair_of(item).delta - static_cast<double>(work.upper_of(item));
+  return depth > 0 ? depth : 0;
 }
 
 /// By how much wider its interval is below delta for the bodies as they were before detail was

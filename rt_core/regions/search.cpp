@@ -280,8 +280,11 @@ class Search {
       }
     }
     for (std::uint32_t i = 0; i < pending_; ++i) {
-      if (least[i] >= threshold_squared_) continue;
-      keep({scratch_.batch_a[i], scratch_.batch_b[i], sqrt_of(least[i])});
+      if (least[i] < threshold_squared_) {
+        keep({scratch_.batch_a[i], scratch_.batch_b[i], sqrt_of(least[i])});
+      } else {
+        note_passed_over(least[i]);
+      }
     }
   }
 
@@ -305,8 +308,11 @@ class Search {
     return out_.best.nearer_than(reach_.limit) ? out_.best.distance : reach_.limit;
   }
 
+  /// Pairs that are not kept, and will not be looked at any more, are no nearer.
+  float seen_or_dropped() const noexcept { return seen_ < most_ ? seen_ : most_; }
+
   void lower_threshold() noexcept {
-    const float known = seen_ < most_ ? seen_ : most_;
+    const float known = seen_or_dropped();
     const float wanted = upper() + reach_.margin;
     threshold_ = wanted < known ? wanted : known;
     threshold_ = threshold_ > 0 ? threshold_ : 0;
@@ -316,7 +322,8 @@ class Search {
   /// Everything that was passed over is at least this far.
   float passed_over() const noexcept {
     const float now = passed_over_now();
-    return now < seen_ ? now : seen_;
+    const float known = seen_or_dropped();
+    return now < known ? now : known;
   }
   float passed_over_now() const noexcept {
     if (best_squared_ < threshold_squared_) return threshold_;

@@ -303,14 +303,22 @@ TEST(RegionSearch, all_along_its_course_what_is_not_kept_is_beyond_rest) {
       const Vec3d course = length * random_unit(rng);
       SearchedPair at(kNear);
       const double least = truth_in_units(kNear, at.pair.unit_m)[region];
-      Meter meter({}, {});
-      regions::Pace pace(meter);
-      const regions::Bounds found = regions::search(regions::best_kernels(), at.frame, *at.scratch,
-                                                    pace, region, {}, reach_along(at, course));
-      ASSERT_TRUE(found.complete);
-      ASSERT_NEAR(double(found.best.distance), least, kRounding);
-      for (const double part : {0.0, 0.4, 1.0}) {
-        expect_pairs_bounded(at, shifted(kNear, part * course), region, found);
+      for (const float margin : {0.02f, 0.0f, -0.02f}) {
+        for (const std::uint32_t room : {regions::kNearPairs, 4u}) {
+          Meter meter({}, {});
+          regions::Pace pace(meter);
+          regions::Reach reach = reach_along(at, course);
+          reach.margin = margin;
+          reach.room = room;
+          const regions::Bounds found = regions::search(regions::best_kernels(), at.frame,
+                                                        *at.scratch, pace, region, {}, reach);
+          ASSERT_TRUE(found.complete);
+          ASSERT_NEAR(double(found.best.distance), least,
+                      std::max(0.0, -double(margin)) + kRounding);
+          for (const double part : {0.0, 0.4, 1.0}) {
+            expect_pairs_bounded(at, shifted(kNear, part * course), region, found);
+          }
+        }
       }
     }
   }
