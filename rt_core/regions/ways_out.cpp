@@ -47,7 +47,7 @@ double felt_of(const WayOut& way, const Shortest& shorter,
     const double by_other = shortest / other.length * cosine;
     felt = by_other > felt ? by_other : felt;
   }
-  return felt;
+  return felt < 1 ? felt : 1;  // a normal's cosine with itself may be more by rounding
 }
 
 }  // namespace

@@ -53,6 +53,16 @@ TEST(RegionsWaysOut, of_ways_as_short_as_each_other_the_one_that_leads_the_same_
   }
 }
 
+// The length of a normal is 1 to rounding.
+TEST(RegionsWaysOut, none_is_felt_more_than_whole) {
+  std::vector<Contact> contacts(2);
+  contacts[0].normal = contacts[1].normal = {0.6, 0, 0.8 + 1e-15};
+  std::vector<WayOut> ways{{1, 1, 0, 1, 2}, {1, 1, 1, 1, 2}};
+  share_by_ways_out(ways, contacts);
+  EXPECT_EQ(contacts[0].share, 1);
+  EXPECT_EQ(contacts[1].share, 1);
+}
+
 TEST(RegionsWaysOut, pieces_of_other_bodies_are_others) {
   EXPECT_EQ(shares({{4, 1, 0, 1, 2}, {1, 1, 1, 1, 2}}, {0, 1}), (std::vector<double>{1, 1}));
 }
