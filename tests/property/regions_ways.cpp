@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Random ways of one body past another: what the region engine remembers from tick to tick, leaves
+// to a tolerance or has no budget for, against exact answers that know nothing of the tick before.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "host_bake/models/models.hpp"
+#include "tests/support/answers.hpp"
+#include "tests/support/placements.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace palpate::test {
+namespace {
+
+// PALPATE_WAYS and PALPATE_TRIANGLES are set by the build, for a short test and a long one.
+constexpr int kWays = PALPATE_WAYS;
+constexpr std::size_t kTriangles = PALPATE_TRIANGLES;
+constexpr int kTicks = 40;  // of one way
+constexpr double kRough = 0.002;
+constexpr double kRounding = 2e-6;
+constexpr double kTolerance_N = 1;
+constexpr double kStiffness = 600;
+
+/// Of radius 1 about the origin, and as rough as a scan: so there are many places as near.
+bake::Mesh model(const char* name) {
+  bake::Mesh mesh = bake::make_model(name, kTriangles);
+  const bake::NormalMesh normal = bake::normalise(mesh);
+  std::mt19937 rng(7);
+  std::uniform_real_distribution<double> rough(-kRough, kRough);
+  for (bake::Point& p : mesh.points) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = (p[k] - normal.centre_m[k]) / normal.radius_m + rough(rng);
+    }
+  }
+  return mesh;
+}
+
+struct Case {
+  const char* a;
+  const char* b;
+};
+
+void PrintTo(const Case& c, std::ostream* os) { *os << c.a << "_" << c.b; }
+
+class RegionsWays : public testing::TestWithParam<Case> {};
+
+/// What is asked at every pose.
+struct Asked {
+  const char* how;
+  Budget budget;
+  double tolerance_N;
+};
+
+constexpr Asked kAsked[] = {
+    {"from tick to tick", {}, 0},
+    {"with a tolerance", {}, kTolerance_N},
+    {"50 units", {.units = 50}, 0},
+    {"150 units", {.units = 150}, 0},
+    {"500 units", {.units = 500}, 0},
+    {"2000 units", {.units = 2000}, 0},
+    {"150 units", {.units = 150}, kTolerance_N},
+};
+
+/// Of regions' penalty forces, shares left out: what Certificate::force_bound_N is about.
+double sum_of_forces(const TickResult& r, double delta) {
+  double sum = 0;
+  for (const Contact& c : r.contacts) sum += kStiffness * std::max(0.0, delta - c.distance_m);
+  return sum;
+}
+
+void expect_sound(const TickResult& r, double truth) {
+  for (const Contact& c : r.contacts) {
+    EXPECT_GE(c.distance_m, truth - kRounding);
+    EXPECT_NEAR(norm(c.point_a_m - c.point_b_m), std::abs(c.distance_m), kRounding);
+    EXPECT_NEAR(norm(c.normal), 1, 1e-6);
+    EXPECT_GE(c.share, 0);
+    EXPECT_LE(c.share, 1);
+  }
+  EXPECT_GE(r.certificate.force_bound_N, 0);
+}
+
+double distance_within(const TickResult& r, double delta) {
+  return r.contacts.empty() ? delta : r.min_distance_m;
+}
+
+/// Passes at a random distance below delta, on a straight line and turning.
+struct Way {
+  Pose pose;
+  Vec3d step;
+  Quat turned;
+
+  Way(Engine& engine, double delta, std::mt19937& rng) {
+    std::uniform_real_distribution<double> from_0_to_1;
+    const Vec3d direction = random_unit(rng);
+    const double gap = delta * (0.05 + 0.9 * from_0_to_1(rng));
+    pose = {3.0 * direction, turn(3.0 * random_unit(rng))};
+    for (int i = 0; i < 2000; ++i) {
+      const Pose poses[2] = {pose, {}};
+      const double d = distance_within(tick_or_fail(engine, poses), delta);
+      if (d < 1.05 * gap) break;
+      pose.position_m -= (d - gap) * direction;
+    }
+    const double length = delta * std::pow(10, -2 + 2 * from_0_to_1(rng));
+    const Vec3d any = random_unit(rng);
+    step = length * (any - dot(any, direction) * direction);
+    turned = turn(length * from_0_to_1(rng) * random_unit(rng));
+  }
+  void go_on() {
+    pose.position_m += step;
+    pose.orientation = turned * pose.orientation;
+  }
+};
+
+TEST_P(RegionsWays, what_is_certified_holds) {
+  const BakedBody a(model(GetParam().a), bake::ForEngine::regions);
+  const BakedBody b(model(GetParam().b), bake::ForEngine::regions);
+  std::mt19937 rng(5);
+  int apart = 0;
+  for (const double delta : {0.005, 0.02, 0.05}) {
+    const auto scene_with = [&](double tolerance_N) {
+      return BakedScene({a.view, b.view}, {{0, 1}},
+                        {.engine = EngineKind::regions,
+                         .delta_m = delta,
+                         .exact = true,
+                         .force_tolerance_N = tolerance_N,
+                         .stiffness_N_per_m = kStiffness,
+                         .cluster_radius_m = delta});
+    };
+    std::vector<BakedScene> scenes;
+    for (const Asked& asked : kAsked) scenes.push_back(scene_with(asked.tolerance_N));
+    for (int i = 0; i < kWays; ++i) {
+      Way way(*scene_with(0).engine, delta, rng);
+      for (int t = 0; t < kTicks; ++t, way.go_on()) {
+        const Pose poses[2] = {way.pose, {}};
+        const BakedScene anew = scene_with(0);
+        const TickResult exact = tick_or_fail(*anew.engine, poses);
+        const double truth = distance_within(exact, delta);
+        if (truth <= 0) break;  // of depths the certificate says nothing
+        ++apart;
+        expect_sound(exact, truth);
+        for (std::size_t k = 0; k < scenes.size(); ++k) {
+          SCOPED_TRACE(std::string(kAsked[k].how) + ", delta " + std::to_string(delta) + ", way " +
+                       std::to_string(i) + ", tick " + std::to_string(t));
+          const TickResult r = tick_or_fail(*scenes[k].engine, poses, kAsked[k].budget);
+          expect_sound(r, truth);
+          expect_certified(r, truth, delta);
+          const double rounding = kStiffness * kRounding * static_cast<double>(r.front_nodes + 1);
+          EXPECT_LE(std::abs(sum_of_forces(r, delta) - sum_of_forces(exact, delta)),
+                    r.certificate.force_bound_N + rounding);
+          if (kAsked[k].tolerance_N > 0 && !r.certificate.truncated()) {
+            EXPECT_LE(r.certificate.force_bound_N, kTolerance_N * 1.00001);
+          }
+          if (HasFailure()) return;
+        }
+      }
+    }
+  }
+  EXPECT_GT(apart, 3 * kWays);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, RegionsWays,
+                         testing::Values(Case{"golf_ball", "golf_shell"}, Case{"screw", "nut"},
+                                         Case{"jaw_lower", "jaw_upper"},
+                                         Case{"golf_club", "ball_joint_cup"}),
+                         [](const auto& tested) {
+                           return std::string(tested.param.a) + "_" + tested.param.b;
+                         });
+
+}  // namespace
+}  // namespace palpate::test
