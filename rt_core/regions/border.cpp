@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/border.hpp"
 
+#include "rt_core/geometry/smooth_step.hpp"
 #include "rt_core/regions/around.hpp"
 
 namespace palpate::regions {
@@ -28,6 +29,20 @@ constexpr int kTurns = 8;
 
 /// Squared sine; a direction that turns by less stays. Most do within three turns.
 constexpr double kTurnedLittle2 = 1e-12;
+
+/// Cosines. Where a place is none that its surface holds out, as seen from within, all ways lead
+/// on, and what is left of a direction that is turned off them leads anywhere: a normal that has
+/// turned farther than this is not believed, and less than this wholly.
+constexpr double kNotBelieved = 0.5;
+constexpr double kBelieved = 0.7;
+
+Vec3d as_far_as_believed(Vec3d turned, Vec3d normal) noexcept {
+  const double cosine = dot(turned, normal);
+  if (cosine >= kBelieved) return turned;
+  const double share = smooth_step((cosine - kNotBelieved) / (kBelieved - kNotBelieved));
+  const Vec3d mean = normal + share * (turned - normal);
+  return (1 / norm(mean)) * mean;
+}
 
 bool turned(Vec3d before, Vec3d after) noexcept {
   return squared_norm(cross(before, after)) >
@@ -94,7 +109,7 @@ Vec3d common_normal(const Place& a, const Place& b, const Mat3d& b_in_a, Vec3d n
     if (!turned(before, found)) break;
   }
   const double length = norm(found);
-  return length > 0 ? (1 / length) * (b_in_a * found) : normal;
+  return length > 0 ? as_far_as_believed((1 / length) * (b_in_a * found), normal) : normal;
 }
 
 }  // namespace palpate::regions

@@ -33,7 +33,8 @@ struct Fall {
 /// On a face a surface has one normal, on an edge those between its two faces', on a corner those
 /// that all ways over it lead away from. Turns the direction off the ways over a and over b by
 /// turns, until it stays or eight times, and is continuous in it to a microradian. Stays what it is
-/// where either place is on a face.
+/// where either place is on a face, or where this would turn it by more than 60 degrees; from 45 on
+/// it turns less.
 /// @param b_in_a  turns b's coordinates into those of a, which the directions are in
 /// @param normal  unit, from b to a: one of b's
 /// @return unit

@@ -74,6 +74,7 @@ void expect_sound(const TickResult& r, double truth) {
     EXPECT_GE(c.distance_m, truth - kRounding);
     EXPECT_NEAR(norm(c.point_a_m - c.point_b_m), std::abs(c.distance_m), kRounding);
     EXPECT_NEAR(norm(c.normal), 1, 1e-6);
+    EXPECT_GE(dot(c.normal, c.point_a_m - c.point_b_m), 0.5 * c.distance_m - kRounding);
     EXPECT_GE(c.share, 0);
     EXPECT_LE(c.share, 1);
   }

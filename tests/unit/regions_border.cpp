@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <set>
 #include <vector>
 
@@ -262,6 +263,25 @@ TEST(RegionsBorder, normal_stays_one_of_the_other_surface) {
       common_normal(below(cube, kOnEdge), below(cube, {-1, -1, -1}), b_in_a, leaning);
   for (const double outwards : {-on_corner.x, -on_corner.y, -on_corner.z}) {
     EXPECT_GE(outwards, -1e-9);
+  }
+}
+
+// Beside surfaces that cross, a corner may be seen from within, where all ways over it lead on.
+TEST(RegionsBorder, normal_does_not_turn_round) {
+  const Cube cube;
+  const Place corner = below(cube, {-1, -1, -1});
+  std::mt19937 rng(1);
+  std::normal_distribution<double> gauss;
+  const auto random_unit = [&] {
+    const Vec3d v{gauss(rng), gauss(rng), gauss(rng)};
+    return (1 / norm(v)) * v;
+  };
+  const Mat3d as_it_is{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3d normal = random_unit();
+    const Vec3d found = common_normal(corner, corner, as_it_is, normal);
+    EXPECT_NEAR(norm(found), 1, 1e-12);
+    EXPECT_GE(dot(found, normal), 0.5 - 1e-12);
   }
 }
 
