@@ -30,9 +30,9 @@ constexpr int kTurns = 8;
 /// Squared sine; a direction that turns by less stays. Most do within three turns.
 constexpr double kTurnedLittle2 = 1e-12;
 
-/// Cosines. Where a place is none that its surface holds out, as seen from within, all ways lead
-/// on, and what is left of a direction that is turned off them leads anywhere: a normal that has
-/// turned farther than this is not believed, and less than this wholly.
+/// Over a corner that is seen from within all ways lead on, and what is left of a direction that is
+/// turned off them leads anywhere. Cosines: a normal that has turned farther than the first is not
+/// believed, and less than the second wholly.
 constexpr double kNotBelieved = 0.5;
 constexpr double kBelieved = 0.7;
 
