@@ -336,21 +336,21 @@ class Search {
   static float proved(float bound) noexcept { return bound > kRounding ? bound - kRounding : 0; }
 
   Bounds interrupted() noexcept {
-    float not_again = kFar;
+    float least = kFar;
     while (seen_before_ > 0) {
       const Witness& pair = left_->near.pairs[--seen_before_];
-      not_again = pair.distance < not_again ? pair.distance : not_again;
+      const float squared = pair.distance * pair.distance;
+      least = squared < least ? squared : least;
       keep(pair);
     }
-    float least = threshold_squared_;
+    least = threshold_squared_ < least ? threshold_squared_ : least;
     for (std::uint32_t i = 0; i < size_; ++i) {
       least = scratch_.stack[i].squared < least ? scratch_.stack[i].squared : least;
     }
     for (std::uint32_t i = 0; i < pending_; ++i) {
       least = scratch_.batch_squared[i] < least ? scratch_.batch_squared[i] : least;
     }
-    const float open = sqrt_of(least);
-    out_.rest = proved(open < not_again ? open : not_again);
+    out_.rest = proved(sqrt_of(least));
     out_.complete = false;
     if (left_ != nullptr) leave();
     return out_;
