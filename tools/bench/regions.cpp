@@ -24,12 +24,12 @@
 // timed. without_contact counts ticks that report none where the exact ones do. force_nrmse is
 // against the exact ticks, of their largest force, over all ticks but the first ten; felt_nrmse is
 // that of the force on display, where force_nrmse sums over regions; settled_* are of the second
-// half of the ticks; bound_of_force is the median of the certified error over the largest sum;
-// exact is the share of ticks whose regions' forces, sizes summed, miss no more than a micronewton,
-// and bound_ratio the median of the certified error over what they miss in the others (0: there are
-// none); force_step is the largest change of that sum from tick to tick. Where FCL is installed,
-// its distance of the same meshes (one least distance, OBBRSS) is asked between the exact ticks,
-// pose by pose; of_fcl is our time by its time, summed over the run.
+// half of the ticks (settled_us: mean); bound_of_force is the median of the certified error over
+// the largest sum; exact is the share of ticks whose regions' forces, sizes summed, miss no more
+// than a micronewton, and bound_ratio the median of the certified error over what they miss in the
+// others (0: there are none); force_step is the largest change of that sum from tick to tick. Where
+// FCL is installed, its distance of the same meshes (one least distance, OBBRSS) is asked between
+// the exact ticks, pose by pose; of_fcl is our time by its time, summed over the run.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -98,8 +98,9 @@ double percentile(std::vector<double> values, double share) {
 
 struct Run {
   std::vector<double> us, contacts, near, units, bound_N;
-  std::vector<double> sizes_N;  ///< of the regions' forces, summed
-  std::vector<Vec3d> force_N;   ///< summed over regions
+  std::vector<double> settled_us;  ///< of the second half of the ticks
+  std::vector<double> sizes_N;     ///< of the regions' forces, summed
+  std::vector<Vec3d> force_N;      ///< summed over regions
   std::vector<Vec3d> felt_N;
   double fcl_us = 0;  ///< mean; 0: not asked
 };
@@ -144,6 +145,7 @@ Run run(Bench& bench, const std::vector<Pose>& poses, const Plan& plan) {
     const std::uint64_t start = cli::processor_ns();
     const TickResult r = bench.tick_at(pose, budget_of(plan));
     out.us.push_back(static_cast<double>(cli::processor_ns() - start) * 1e-3);
+    if (out.us.size() > poses.size() / 2) out.settled_us.push_back(out.us.back());
     out.contacts.push_back(static_cast<double>(r.contacts.size()));
     out.near.push_back(static_cast<double>(r.front_nodes));
     out.units.push_back(static_cast<double>(r.queries));
@@ -197,13 +199,14 @@ void print_row(const char* scene, double delta_rel, const Plan& plan, const Run&
                                     r.units.end());
   const Tightness tight = tightness(r, exact);
   std::printf(
-      "%s,%g,%s,%g,%g,%g,%.1f,%.1f,%.1f,%.0f,%.0f,%.1f,%.1f,%d,%.4f,%.4f,%.4f,%.4f,%.2f,%.1f,%.4f",
+      "%s,%g,%s,%g,%g,%g,%.1f,%.1f,%.1f,%.1f,%.1f,%.0f,%.0f,%.1f,%.1f,%d,%.4f,%.4f,%.4f,%.4f,%.2f,%"
+      ".1f,%.4f",
       scene, delta_rel, plan.cold ? "cold" : "warm", plan.budget_us, double(plan.budget_units),
-      plan.tolerance_N, mean(r.us), percentile(r.us, 0.5), percentile(r.us, 0.99), mean(r.units),
-      mean(settled), mean(r.near), mean(r.contacts), without_contact(r, exact),
-      nrmse(r.force_N, exact.force_N, kStarted), nrmse(r.felt_N, exact.felt_N, kStarted),
-      nrmse(r.felt_N, exact.felt_N, r.felt_N.size() / 2), percentile(r.bound_N, 0.5) / peak,
-      tight.exact, tight.ratio, step / peak);
+      plan.tolerance_N, mean(r.us), percentile(r.us, 0.5), percentile(r.us, 0.99),
+      mean(r.settled_us), percentile(r.settled_us, 0.5), mean(r.units), mean(settled), mean(r.near),
+      mean(r.contacts), without_contact(r, exact), nrmse(r.force_N, exact.force_N, kStarted),
+      nrmse(r.felt_N, exact.felt_N, kStarted), nrmse(r.felt_N, exact.felt_N, r.felt_N.size() / 2),
+      percentile(r.bound_N, 0.5) / peak, tight.exact, tight.ratio, step / peak);
   if (r.fcl_us > 0) {
     std::printf(",%.1f,%.3f\n", r.fcl_us, mean(r.us) / r.fcl_us);
   } else {
@@ -373,6 +376,10 @@ struct SameContact {
   std::vector<Pose> poses;
 };
 
+void append(const std::vector<double>& more, std::vector<double>& to) {
+  to.insert(to.end(), more.begin(), more.end());
+}
+
 /// With tolerances, turn by turn: what else the machine does meanwhile it does to all sizes. A row
 /// has the times of all turns; its errors are against the exact force of its own numbers, or, with
 /// detail left out, of the coarsest jaws with all detail.
@@ -399,9 +406,10 @@ void measure_growth(int ticks, const regions::Kernels& kernels) {
       std::vector<Run> found(sizes.size());
       for (int turn = 0; turn < kTurns; ++turn) {
         for (std::size_t i = 0; i < sizes.size(); ++i) {
-          std::vector<double> us = std::move(found[i].us);
+          const Run before = std::move(found[i]);
           found[i] = run(benches[i], same.poses, plan);
-          found[i].us.insert(found[i].us.end(), us.begin(), us.end());
+          append(before.us, found[i].us);
+          append(before.settled_us, found[i].settled_us);
         }
       }
       for (std::size_t i = 0; i < sizes.size(); ++i) {
@@ -501,8 +509,9 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::printf(
-      "scene,delta_rel,mode,budget_us,budget_units,tolerance_N,mean_us,median_us,p99_us,units,"
-      "settled_units,near_regions,contacts,without_contact,force_nrmse,felt_nrmse,"
+      "scene,delta_rel,mode,budget_us,budget_units,tolerance_N,mean_us,median_us,p99_us,"
+      "settled_us,settled_median_us,units,settled_units,near_regions,contacts,without_contact,"
+      "force_nrmse,felt_nrmse,"
       "settled_felt_nrmse,bound_of_force,exact,bound_ratio,force_step,fcl_us,of_fcl\n");
   constexpr struct {
     const char* name;
