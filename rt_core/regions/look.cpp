@@ -20,6 +20,32 @@ void put(Vec3f place, std::uint32_t i, Cells& cells) noexcept {
   cells.at[2][i] = place.z;
 }
 
+/// An edge of more cells than this makes a triangle long.
+constexpr float kLongCells = 4;
+
+/// Places whose numbers follow each other are spread over the triangle: multiples of the plastic
+/// number's powers (Roberts 2018) in a parallelogram, of which one half is folded over the other.
+Vec3f spread_over(const image::RegionTriangle& t, std::uint32_t number) noexcept {
+  constexpr std::uint32_t kSteps[] = {0xc13fa9a9u, 0x91e10da5u};
+  constexpr float kUnit = 0x1p-24f;
+  float u = kUnit * static_cast<float>((number * kSteps[0] + 0x80000000u) >> 8);
+  float v = kUnit * static_cast<float>((number * kSteps[1] + 0x80000000u) >> 8);
+  if (u + v > 1) {
+    u = 1 - u;
+    v = 1 - v;
+  }
+  const float* c = t.corners;
+  const auto at = [&](std::uint32_t axis) {
+    return c[axis] + u * (c[3 + axis] - c[axis]) + v * (c[6 + axis] - c[axis]);
+  };
+  return {at(0), at(1), at(2)};
+}
+
+/// Where a triangle is looked from.
+Vec3f place_on(const image::RegionTriangle& t, std::uint32_t number, float cell) noexcept {
+  return is_long(t, cell) ? spread_over(t, number) : centre_of(t);
+}
+
 /// From a's image coordinates to b's.
 void bring_over(const Transform& a_to_b, Cells& cells) noexcept {
   for (std::uint32_t i = 0; i < kMostLooks; i += kLanes) {
@@ -88,8 +114,10 @@ void ask_for_triangles(const PairFrame& frame, Looks& looks) noexcept {
 
 void find_bricks(const PairFrame& frame, Looks& looks) noexcept {
   Cells cells;
+  const float cell = frame.b->proximity_grid->cell * frame.b_to_a.scale;
   for (std::uint32_t i = 0; i < looks.count; ++i) {
-    put(centre_of(frame.a->region_triangles[looks.pairs[i].a]), i, cells);
+    const image::RegionTriangle& t = frame.a->region_triangles[looks.pairs[i].a];
+    put(place_on(t, looks.number[i], cell), i, cells);
   }
   bring_over(frame.a_to_b, cells);
   find_cells(*frame.b->proximity_grid, cells);
@@ -114,6 +142,16 @@ void name_pairs(const PairFrame& frame, Looks& looks) noexcept {
 }
 
 }  // namespace
+
+bool is_long(const image::RegionTriangle& t, float cell) noexcept {
+  const float long2 = kLongCells * kLongCells * cell * cell;
+  for (std::uint32_t i = 0; i < 9; i += 3) {
+    const float* from = t.corners + i;
+    const float* to = t.corners + (i + 3) % 9;
+    if (squared_norm(Vec3f{to[0] - from[0], to[1] - from[1], to[2] - from[2]}) > long2) return true;
+  }
+  return false;
+}
 
 /// Calls by name, not through a table, so that the stack report counts them.
 void look_step(const PairFrame& frame, std::uint32_t step, Looks& looks) noexcept {
@@ -149,7 +187,10 @@ void look_over(const PairFrame& frame, std::uint32_t region, std::uint32_t from,
                std::uint32_t count, Looks& out) noexcept {
   PALPATE_ASSERT(count <= kMostLooks);
   const image::RegionRun& run = frame.a->region_runs[region];
-  for (std::uint32_t i = 0; i < count; ++i) out.pairs[i] = {triangle_of(run, from + i), 0, 0};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    out.pairs[i] = {triangle_of(run, from + i), 0, 0};
+    out.number[i] = from + i;
+  }
   out.count = count;
 }
 
@@ -162,7 +203,9 @@ void look_beside(const PairFrame& frame, std::uint32_t region, std::uint32_t tri
   const std::uint32_t centred = triangle > wanted / 2 ? triangle - wanted / 2 : 0;
   std::uint32_t next = centred < run.first ? run.first : centred < last ? centred : last;
   for (out.count = 0; out.count < wanted; ++next) {
-    if (next != triangle) out.pairs[out.count++] = {next, 0, 0};
+    if (next == triangle) continue;
+    out.number[out.count] = out.count;
+    out.pairs[out.count++] = {next, 0, 0};
   }
 }
 

@@ -27,6 +27,11 @@ inline Vec3f centre_of(const image::RegionTriangle& t) noexcept {
           kThird * (c[2] + c[5] + c[8])};
 }
 
+/// Whether a triangle is so long that its centre does not tell where it is, in cells of the grid
+/// that it is looked up in or named by.
+/// @param cell  in the coordinates of the triangle's image
+bool is_long(const image::RegionTriangle& t, float cell) noexcept;
+
 /// A place in the image coordinates of one body in those of the other.
 /// @param p  Vec3f, or several places by lanes (simd.hpp): the same bits
 template <class Place>
@@ -42,7 +47,9 @@ Place at_place(const Transform& m, Place p) noexcept {
 std::uint32_t near_place(const PairFrame& frame, Vec3f place) noexcept;
 
 /// Triangles of a that are looked from, each with the triangle of b that b's proximity grid names
-/// where its centre lies (closest point transforms: Mauch 2000). Distances are not measured.
+/// where its centre lies (closest point transforms: Mauch 2000); or some other place of it, by the
+/// number of the look, where it is several cells long, as those of CAD models are. Distances are
+/// not measured.
 ///
 /// A look takes four reads of memory, each from where the one before has said, and no arithmetic to
 /// speak of, where a dive into both trees takes seven work units; and it finds what is near as the
@@ -52,6 +59,7 @@ struct Looks {
   Witness pairs[kMostLooks];            ///< `b` once all steps are done; distances are 0
   const std::uint32_t* at[kMostLooks];  ///< what the next step reads
   std::uint8_t in_brick[kMostLooks];    ///< and where in that, if it is a brick
+  std::uint32_t number[kMostLooks];     ///< looks from one triangle by different ones lie apart
 };
 
 inline constexpr std::uint32_t kLookSteps = 4;

@@ -14,6 +14,10 @@ using image::RegionNode;
 /// places that are not quite near enough are gone through to their ends; with more, all places are
 /// gone into alike.
 constexpr float kNearerBelow = 0.7f;
+/// A box whose longest side is longer than the next by this is looked up at so many places along
+/// it: those of CAD models' needles may be near at one end alone.
+constexpr float kLongBox = 4;
+constexpr std::uint32_t kAlongBox = 4;
 /// Boxes that wait; what would be more is not looked into.
 constexpr std::uint32_t kMostWaiting = 128;
 
@@ -34,6 +38,35 @@ struct Nearer {
     return x.apart < y.apart || (x.apart == y.apart && x.node < y.node);
   }
 };
+
+Vec3f corner_of(const image::RegionTriangle& t, std::uint32_t i) noexcept {
+  return {t.corners[3 * i], t.corners[3 * i + 1], t.corners[3 * i + 2]};
+}
+
+/// Of a place from a segment that begins at the origin.
+float squared_from(Vec3f place, Vec3f segment) noexcept {
+  const float along = dot(place, segment);
+  const float length2 = squared_norm(segment);
+  if (!(along > 0)) return squared_norm(place);
+  return squared_norm(place - (along < length2 ? along / length2 : 1.0f) * segment);
+}
+
+/// Of a place from a triangle.
+float distance_from(Vec3f place, const image::RegionTriangle& t) noexcept {
+  const Vec3f corners[3] = {corner_of(t, 0), corner_of(t, 1), corner_of(t, 2)};
+  const Vec3f normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  float least2 = kFarthest;
+  bool above = squared_norm(normal) > 0;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const Vec3f edge = corners[(i + 1) % 3] - corners[i];
+    const Vec3f from = place - corners[i];
+    above = above && dot(cross(normal, edge), from) >= 0;
+    const float squared = squared_from(from, edge);
+    least2 = squared < least2 ? squared : least2;
+  }
+  if (above) return __builtin_fabsf(dot(normal, place - corners[0])) / norm(normal);
+  return sqrt_of(least2);
+}
 
 class Scout {
  public:
@@ -65,6 +98,7 @@ class Scout {
     Looks looks;
     while (looks.count < count) {
       const image::RegionRun& run = frame_.a->region_runs[looks.count * (regions / count)];
+      looks.number[looks.count] = looks.count;
       looks.pairs[looks.count++] = {run.first + run.count / 2, 0, 0};
     }
     return nearest_of(looks);
@@ -83,17 +117,58 @@ class Scout {
 
   void push_below(std::uint32_t index) noexcept {
     const RegionNode& node = frame_.a->region_nodes[index];
-    pace_.charge(node.children / kLooksPerUnit);
+    std::uint32_t looks = 0;
     for (std::uint32_t i = 0; i < node.children; ++i) {
-      const Vec3f centre = {node.centre[0][i], node.centre[1][i], node.centre[2][i]};
-      const Vec3f place = at_place(frame_.a_to_b, centre);
-      const Vec3f near = centre_of(frame_.b->region_triangles[near_place(frame_, place)]);
-      const float apart = unit_of_b_ * norm(place - near);
-      const float radius = sqrt_of(frame_.scale2_a * size2_of(node, i));
-      if (apart - radius < limit_ && waiting_.items().size() < kMostWaiting) {
-        waiting_.push({apart - kNearerBelow * radius, node.first + i});
+      const Along along = along_box(node, i);
+      float apart = kFarthest;
+      for (std::uint32_t k = 0; k < along.places; ++k) {
+        const float here = apart_at(along.first + static_cast<float>(k) * along.step);
+        apart = here < apart ? here : apart;
+      }
+      looks += along.places;
+      if (apart - along.radius < limit_ && waiting_.items().size() < kMostWaiting) {
+        waiting_.push({apart - kNearerBelow * along.radius, node.first + i});
       }
     }
+    pace_.charge(looks / kLooksPerUnit);
+  }
+
+  /// Places in a's image coordinates, evenly along a box, and what is about each of them.
+  struct Along {
+    Vec3f first;
+    Vec3f step{};
+    std::uint32_t places = 1;
+    float radius = 0;  ///< in units
+  };
+
+  Along along_box(const RegionNode& node, std::uint32_t i) const noexcept {
+    std::uint32_t longest = 0;
+    for (std::uint32_t k = 1; k < 3; ++k) {
+      longest = node.half[k][i] > node.half[longest][i] ? k : longest;
+    }
+    const float half = node.half[longest][i];
+    const float across2 = size2_of(node, i) - half * half;
+    Along out{.first = {node.centre[0][i], node.centre[1][i], node.centre[2][i]}};
+    if (half * half <= kLongBox * kLongBox * across2) {
+      out.radius = sqrt_of(frame_.scale2_a * size2_of(node, i));
+      return out;
+    }
+    constexpr float kPart = 1.0f / kAlongBox;
+    const std::uint32_t row = 3 * longest;
+    const Vec3f axis = {node.axes[row][i], node.axes[row + 1][i], node.axes[row + 2][i]};
+    out.first = out.first - (1 - kPart) * half * axis;
+    out.step = 2 * kPart * half * axis;
+    out.places = kAlongBox;
+    out.radius = sqrt_of(frame_.scale2_a * (kPart * kPart * half * half + across2));
+    return out;
+  }
+
+  /// From the triangle that is named there.
+  float apart_at(Vec3f place_in_a) const noexcept {
+    const Vec3f place = at_place(frame_.a_to_b, place_in_a);
+    const image::RegionTriangle& near = frame_.b->region_triangles[near_place(frame_, place)];
+    const bool wide = is_long(near, frame_.b->proximity_grid->cell);
+    return unit_of_b_ * (wide ? distance_from(place, near) : norm(place - centre_of(near)));
   }
 
   /// Of what is looked up, where it is nearer than the limit.
