@@ -21,7 +21,7 @@ void put(Vec3f place, std::uint32_t i, Cells& cells) noexcept {
 }
 
 /// An edge of more cells than this makes a triangle long.
-constexpr float kLongCells = 4;
+constexpr float kLongCells = 2;
 
 /// Places whose numbers follow each other are spread over the triangle: multiples of the plastic
 /// number's powers (Roberts 2018) in a parallelogram, of which one half is folded over the other.

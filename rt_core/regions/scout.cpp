@@ -24,10 +24,6 @@ constexpr std::uint32_t kMostWaiting = 128;
 static_assert(kMostLooks == kBatch);
 /// Sixteen looks and their batch, which are never begun with less.
 constexpr std::uint64_t kFewestUnits = kMostLooks / kLooksPerUnit + kBatchUnits;
-/// Nearly all contacts are found with half of these. Where there is none there are many places that
-/// are not quite near enough.
-constexpr double kMostUnits = 100;
-
 struct Place {
   float apart = 0;  ///< of what is nearest below it, about
   std::uint32_t node = 0;
@@ -203,12 +199,12 @@ class Scout {
 
 }  // namespace
 
-std::uint32_t scout(Work& work, std::uint32_t pair) noexcept {
+std::uint32_t scout(Work& work, std::uint32_t pair, double most_units) noexcept {
   const QueryMemory& memory = work.memory;
   const PairFrame& frame = memory.frames[pair];
   if (!can_look(frame) || !work.pace.go_on()) return image::kNone;
   const double left = work.units_left();
-  const double units = left < kMostUnits ? left : kMostUnits;
+  const double units = left < most_units ? left : most_units;
   if (units < static_cast<double>(kFewestUnits)) return image::kNone;
   work.pace.limit(static_cast<std::uint64_t>(units));
   const Witness found = Scout(work, pair).run();
