@@ -17,6 +17,7 @@
 #include "tests/support/counting_clock.hpp"
 #include "tests/support/effort.hpp"
 #include "tests/support/ground.hpp"
+#include "tests/support/placements.hpp"
 #include "tests/support/shapes.hpp"
 
 namespace palpate::test {
@@ -273,6 +274,30 @@ TEST(RegionsBudget, however_little_there_is_after_a_jump_some_contact_is_known) 
   RecordProperty("lost", lost);
   EXPECT_GT(touching, 9 * kJumps / 10);
   EXPECT_EQ(lost, 0);
+}
+
+/// Flanks of a gear, each a region of its own and fifty tolerances long, may be near anywhere along
+/// them. Looked from at their centres alone half of these jumps felt nothing.
+TEST(RegionsBudget, after_a_jump_needles_are_found_to_touch) {
+  constexpr double kDeltaOfGears = 0.02;
+  bake::BakeOptions options = options_for(bake::ForEngine::regions);
+  options.delta_rel = kDeltaOfGears;
+  const BakedBody a(gear(24, 1, 0.5), options);
+  const BakedBody b(gear(20, 0.9, 0.5), options);
+  const Settings settings{.engine = EngineKind::regions, .delta_m = kDeltaOfGears};
+  std::mt19937 rng(5);
+  constexpr int kJumps = effort(40, 10);
+  int lost = 0;
+  for (int i = 0; i < kJumps; ++i) {
+    const Vec3d direction = random_unit(rng);
+    const Quat orientation = turn(3.0 * random_unit(rng));
+    const Pose poses[2] = {approach(a.mesh, b.mesh, 0.5 * kDeltaOfGears, 4, direction, orientation),
+                           {}};
+    BakedScene scene({a.view, b.view}, {{0, 1}}, settings);
+    lost += tick_or_fail(*scene.engine, poses, {.units = 200}).contacts.empty() ? 1 : 0;
+  }
+  RecordProperty("lost", lost);
+  EXPECT_LE(lost, kJumps / 4);
 }
 
 /// Jaws pass each other by more than delta a tick and meet in places that have not touched before.

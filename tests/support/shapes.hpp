@@ -141,6 +141,30 @@ inline Mesh cylinder(std::uint32_t sides, double radius, double half_length) {
   return m;
 }
 
+/// Along x, closed: as parts come out of CAD, its flanks are needles from one end to the other.
+inline Mesh gear(std::uint32_t teeth, double radius, double half_length) {
+  constexpr std::uint32_t kSidesOfTooth = 8;
+  const std::uint32_t sides = kSidesOfTooth * teeth;
+  Mesh m;
+  for (const double x : {-half_length, half_length}) {
+    for (std::uint32_t k = 0; k < sides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / sides;
+      const double r = radius * (1 + 0.08 * std::cos(teeth * angle));
+      m.points.push_back({x, r * std::cos(angle), r * std::sin(angle)});
+    }
+  }
+  m.points.push_back({-half_length, 0, 0});
+  m.points.push_back({half_length, 0, 0});
+  for (std::uint32_t k = 0; k < sides; ++k) {
+    const std::uint32_t next = (k + 1) % sides;
+    m.faces.push_back({k, next, sides + next});
+    m.faces.push_back({k, sides + next, sides + k});
+    m.faces.push_back({2 * sides, next, k});
+    m.faces.push_back({2 * sides + 1, sides + k, sides + next});
+  }
+  return m;
+}
+
 inline void append(Mesh& to, const Mesh& from, double dx, double dy, double dz) {
   const auto base = static_cast<std::uint32_t>(to.points.size());
   for (const bake::Point& p : from.points) to.points.push_back({p[0] + dx, p[1] + dy, p[2] + dz});

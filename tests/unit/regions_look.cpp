@@ -103,6 +103,29 @@ TEST(RegionLook, Looks_beside_a_triangle_are_of_the_others_of_its_region_that_fo
   }
 }
 
+/// A needle through a ball: all of its surface is far from the needle's centre.
+TEST(RegionLook, A_long_triangle_is_looked_from_all_along) {
+  const BakedBody needle(cylinder(3, 0.01, 1), bake::ForEngine::regions);
+  regions::PairFrame frame = coincident(ball().view);
+  frame.a = &needle.view;
+  for (std::uint32_t region = 0; region < needle.view.regions.size(); ++region) {
+    const std::uint32_t first = needle.view.region_runs[region].first;
+    if (!regions::is_long(needle.view.region_triangles[first], frame.b->proximity_grid->cell))
+      continue;
+    regions::Looks looks;
+    regions::look_over(frame, region, 0, regions::kMostLooks, looks);
+    regions::look_from(frame, looks);
+    double least = 1, most = -1;
+    for (const regions::Witness& pair : looks.pairs) {
+      const double x = centre_of(ball().view.region_triangles[pair.b]).x;
+      least = std::min(least, x);
+      most = std::max(most, x);
+    }
+    EXPECT_LT(least, -0.7);
+    EXPECT_GT(most, 0.7);
+  }
+}
+
 TEST(RegionLook, Far_outside_something_is_named) {
   const ImageView& view = ball().view;
   regions::PairFrame frame = coincident(view);
