@@ -14,8 +14,8 @@ using image::RegionNode;
 /// places that are not quite near enough are gone through to their ends; with more, all places are
 /// gone into alike.
 constexpr float kNearerBelow = 0.7f;
-/// A box whose longest side is longer than the next by this is looked up at so many places along
-/// it: those of CAD models' needles may be near at one end alone.
+/// A box that is so many times as long as it is wide is looked up at so many places along it: those
+/// of CAD models' needles may be near at one end alone.
 constexpr float kLongBox = 4;
 constexpr std::uint32_t kAlongBox = 4;
 /// Boxes that wait; what would be more is not looked into.
@@ -24,6 +24,7 @@ constexpr std::uint32_t kMostWaiting = 128;
 static_assert(kMostLooks == kBatch);
 /// Sixteen looks and their batch, which are never begun with less.
 constexpr std::uint64_t kFewestUnits = kMostLooks / kLooksPerUnit + kBatchUnits;
+
 struct Place {
   float apart = 0;  ///< of what is nearest below it, about
   std::uint32_t node = 0;

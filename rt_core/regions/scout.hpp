@@ -7,14 +7,15 @@
 namespace palpate::regions {
 
 /// Gives a region of a pair a witness nearer than delta, where one is found for what the tick has
-/// left, and no more than so many units. Descends a's tree alone, always where it seems
-/// nearest (best first: Hjaltason and Samet 1999): the centres of boxes are looked up in b's
-/// proximity grid (look.hpp), and of a region sixteen triangles, whose pairs are measured. Of
-/// surfaces that fit each other, one look at each of sixteen regions does.
+/// left. Descends a's tree alone, always where it seems nearest (best first: Hjaltason and Samet
+/// 1999): the centres of boxes, or of long ones places along them, are looked up in b's proximity
+/// grid (look.hpp), and of a region sixteen triangles, whose pairs are measured. Of surfaces that
+/// fit each other, one look at each of sixteen regions does.
 ///
 /// Nothing is proved by that. It takes a third of what a search of both trees takes that ends with
 /// the first pair near enough (docs/TRIED.md, "Any contact first").
 /// @param pair  whose images may have no grid: then nothing is done
+/// @param most_units  to take for it, also where the tick has more
 /// @return the region's state; image::kNone where nothing has been found
 /// Cost: that and a batch, or all of a that seems to be nearer.
 std::uint32_t scout(Work& work, std::uint32_t pair, double most_units) noexcept;
