@@ -2,8 +2,10 @@
 #include "rt_core/regions/scout.hpp"
 
 #include "rt_core/base/queue.hpp"
+#include "rt_core/convex/simplex.hpp"
 #include "rt_core/regions/look.hpp"
 #include "rt_core/regions/named_box.hpp"
+#include "rt_core/regions/region_triangle.hpp"
 
 namespace palpate::regions {
 namespace {
@@ -36,33 +38,12 @@ struct Nearer {
   }
 };
 
-Vec3f corner_of(const image::RegionTriangle& t, std::uint32_t i) noexcept {
-  return {t.corners[3 * i], t.corners[3 * i + 1], t.corners[3 * i + 2]};
-}
-
-/// Of a place from a segment that begins at the origin.
-float squared_from(Vec3f place, Vec3f segment) noexcept {
-  const float along = dot(place, segment);
-  const float length2 = squared_norm(segment);
-  if (!(along > 0)) return squared_norm(place);
-  return squared_norm(place - (along < length2 ? along / length2 : 1.0f) * segment);
-}
-
-/// Of a place from a triangle.
+/// Of a place from a triangle, in image coordinates.
 float distance_from(Vec3f place, const image::RegionTriangle& t) noexcept {
-  const Vec3f corners[3] = {corner_of(t, 0), corner_of(t, 1), corner_of(t, 2)};
-  const Vec3f normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  float least2 = kFarthest;
-  bool above = squared_norm(normal) > 0;
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    const Vec3f edge = corners[(i + 1) % 3] - corners[i];
-    const Vec3f from = place - corners[i];
-    above = above && dot(cross(normal, edge), from) >= 0;
-    const float squared = squared_from(from, edge);
-    least2 = squared < least2 ? squared : least2;
-  }
-  if (above) return __builtin_fabsf(dot(normal, place - corners[0])) / norm(normal);
-  return sqrt_of(least2);
+  const Vec3d origin = {place.x, place.y, place.z};
+  const Vec3d corners[3] = {corner(t, 0, 1) - origin, corner(t, 1, 1) - origin,
+                            corner(t, 2, 1) - origin};
+  return static_cast<float>(sqrt_of(convex::nearest_on_triangle(corners, 0, 1, 2).squared));
 }
 
 class Scout {

@@ -511,8 +511,9 @@ int main(int argc, char** argv) {
   std::printf(
       "scene,delta_rel,mode,budget_us,budget_units,tolerance_N,mean_us,median_us,p99_us,"
       "settled_us,settled_median_us,units,settled_units,near_regions,contacts,without_contact,"
-      "force_nrmse,felt_nrmse,"
-      "settled_felt_nrmse,bound_of_force,exact,bound_ratio,force_step,fcl_us,of_fcl\n");
+      "force_nrmse,felt_nrmse,settled_felt_nrmse,bound_of_force,exact,bound_ratio,force_step,fcl_"
+      "us,"
+      "of_fcl\n");
   constexpr struct {
     const char* name;
     void (*measure)(int ticks, const palpate::regions::Kernels& kernels);
