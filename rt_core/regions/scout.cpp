@@ -40,9 +40,9 @@ struct Nearer {
 
 /// Of a place from a triangle, in image coordinates.
 float distance_from(Vec3f place, const image::RegionTriangle& t) noexcept {
-  const Vec3d origin = {place.x, place.y, place.z};
-  const Vec3d corners[3] = {corner(t, 0, 1) - origin, corner(t, 1, 1) - origin,
-                            corner(t, 2, 1) - origin};
+  const Vec3d from = {static_cast<double>(place.x), static_cast<double>(place.y),
+                      static_cast<double>(place.z)};
+  const Vec3d corners[3] = {corner(t, 0, 1) - from, corner(t, 1, 1) - from, corner(t, 2, 1) - from};
   return static_cast<float>(sqrt_of(convex::nearest_on_triangle(corners, 0, 1, 2).squared));
 }
 
