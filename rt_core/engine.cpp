@@ -118,13 +118,13 @@ Found find_by_regions(Engine& engine, Meter& meter) noexcept {
     demand.tolerance_m = s.force_tolerance_N / s.stiffness_N_per_m;
   }
   const regions::QueryResult found = regions::query(engine.regions, demand, meter, engine.tally);
-  Found out{
-      .contacts = found.contacts,
-      .tail_contacts = regions::tail_contacts(found.contacts, found.crossings),
-      .min_distance_m = found.min_distance_m,
-      .front_nodes = found.near_regions,
-      .queries = found.queries,
-      .certificate = certify(found, found.min_distance_m, s.delta_m, least_error_m(engine.states))};
+  Found out{.contacts = found.contacts,
+            .tail_contacts = regions::tail_contacts(found.contacts, found.crossings),
+            .min_distance_m = found.min_distance_m,
+            .front_nodes = found.near_regions,
+            .queries = found.queries,
+            .certificate = certify(found, found.maybe_apart ? s.delta_m : found.min_distance_m,
+                                   s.delta_m, least_error_m(engine.states))};
   out.certificate.force_bound_N = s.stiffness_N_per_m * found.open_m;
   return out;
 }

@@ -66,7 +66,7 @@ struct Layout {
   std::span<regions::Active> active;
   std::span<regions::WayOut> ways_out;
   std::span<float> swept, absence;
-  std::span<double> lasting;
+  std::span<double> lasting, scouted;
   std::span<regions::SearchScratch> search;
   std::span<regions::CrossingScratch> crossing;
   std::span<regions::Unfinished> unfinished;
@@ -107,6 +107,7 @@ void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
   out.ways_out = arena.array<regions::WayOut>(regions::ways_out_for(all));
   out.swept = arena.array<float>(most);
   out.lasting = arena.array<double>(all);
+  out.scouted = arena.array<double>(all);
   out.absence = arena.array<float>(all);
   out.search = arena.array<regions::SearchScratch>(1);
   out.crossing = arena.array<regions::CrossingScratch>(1);
@@ -172,6 +173,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.regions.ways_out = layout.ways_out;
   e.regions.swept = layout.swept;
   e.regions.lasting = layout.lasting;
+  e.regions.scouted = layout.scouted;
   e.regions.crowd.absence = layout.absence;
   e.regions.search = layout.search.data();
   e.regions.crossing = layout.crossing.data();

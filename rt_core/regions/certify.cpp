@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/certify.hpp"
 
+#include "rt_core/regions/containment.hpp"
+
 namespace palpate::regions {
 namespace {
 
@@ -43,6 +45,7 @@ void certify(Work& work) noexcept {
     const double size = static_cast<double>(pair.image_a->regions[item.region].radius);
     if (item.width > kClosed && size > result.s_worst) result.s_worst = size;
   }
+  if (may_be_inside(work)) result.unresolved_lower_m = 0;
 }
 
 }  // namespace palpate::regions

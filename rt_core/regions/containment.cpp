@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/containment.hpp"
 
+#include <iterator>
+
 #include "rt_core/base/assert.hpp"
+#include "rt_core/regions/look_into.hpp"
 #include "rt_core/regions/named_box.hpp"
 #include "rt_core/regions/work.hpp"
 
@@ -40,26 +43,24 @@ Box box_along(Vec3d from, const Mat3d& axes, double length) noexcept {
 }
 
 /// Triangles whose boxes a box touches, while pass(triangle) says so.
-/// @return false where the pace ended it
+/// @return false where the pace ended it: then another call goes on from there
 template <class Pass>
-bool visit_touched(const Kernels& kernels, const ImageView& body, const Box& box,
-                   SearchScratch& scratch, Pace& pace, Pass pass) noexcept {
+bool visit_touched(const Kernels& kernels, const ImageView& body, const Box& box, Walk& walk,
+                   Pace& pace, Pass pass) noexcept {
   constexpr Transform kStay = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}, 1};
   BoxTest test;
-  std::uint32_t size = 0;
-  scratch.stack[size++].a = 0;
-  while (size > 0) {
+  while (walk.size > 0) {
     if (!pace.go_on()) return false;
     pace.charge(1);
-    const RegionNode& node = body.region_nodes[scratch.stack[--size].a];
+    const RegionNode& node = body.region_nodes[walk.nodes[--walk.size]];
     std::uint32_t met = kernels.test_boxes(box, kStay, {}, node, 1, kRoom * kRoom, test);
     for (; met != 0; met &= met - 1) {
       const auto child = node.first + static_cast<std::uint32_t>(__builtin_ctz(met));
       if (node.leaf != 0) {
         if (!pass(body.region_triangles[child])) return true;
       } else {
-        PALPATE_ASSERT(size < kMaxCandidates);
-        scratch.stack[size++].a = child;
+        PALPATE_ASSERT(walk.size < std::size(walk.nodes));
+        walk.nodes[walk.size++] = child;
       }
     }
   }
@@ -91,39 +92,53 @@ Meeting meet(const RegionTriangle& t, Vec3d from, const Mat3d& axes) noexcept {
   return {true, edge, left, whole != 0 ? ahead / whole : 0};
 }
 
-Side side_along(const Kernels& kernels, const ImageView& body, Vec3d from, const Mat3d& axes,
-                SearchScratch& scratch, Pace& pace) noexcept {
-  int winding = 0;  // triangles passed outwards less those passed inwards
+/// How a question's ray ends.
+enum class End : std::uint8_t { of_pace, at_edge, outside, inside };
+
+End follow_ray(const Kernels& kernels, const ImageView& body, SideQuestion& q,
+               Pace& pace) noexcept {
+  const Mat3d& axes = kRays[q.ray];
   bool met_edge = false;
-  const Box box = box_along(from, axes, norm(from) + kMostReach);
+  const Box box = box_along(q.point, axes, norm(q.point) + kMostReach);
   const bool complete =
-      visit_touched(kernels, body, box, scratch, pace, [&](const RegionTriangle& t) {
-        const Meeting m = meet(t, from, axes);
-        if (m.passed && !m.edge && m.way > 0) winding += m.outwards ? 1 : -1;
+      visit_touched(kernels, body, box, q.walk, pace, [&](const RegionTriangle& t) {
+        const Meeting m = meet(t, q.point, axes);
+        if (m.passed && !m.edge && m.way > 0) q.winding += m.outwards ? 1 : -1;
         met_edge = m.edge;
         return !met_edge;
       });
-  if (!complete || met_edge) return Side::unknown;
-  return winding > 0 ? Side::inside : Side::outside;
+  if (met_edge) return End::at_edge;
+  if (!complete) return End::of_pace;
+  return q.winding > 0 ? End::inside : End::outside;
 }
 
 }  // namespace
 
-Side side_of(const Kernels& kernels, const ImageView& body, Vec3d point, SearchScratch& scratch,
+Side side_of(const Kernels& kernels, const ImageView& body, SideQuestion& question,
              Pace& pace) noexcept {
   if ((body.header->flags & static_cast<std::uint32_t>(image::HeaderFlag::open)) != 0) {
     return Side::outside;
   }
-  if (squared_norm(point) > kMostReach * kMostReach) return Side::outside;
-  for (const Mat3d& axes : kRays) {
-    const Side side = side_along(kernels, body, point, axes, scratch, pace);
-    if (side != Side::unknown) return side;
+  if (squared_norm(question.point) > kMostReach * kMostReach) return Side::outside;
+  while (question.ray < kRayCount) {
+    switch (follow_ray(kernels, body, question, pace)) {
+      case End::of_pace:
+        return Side::unknown;
+      case End::outside:
+        return Side::outside;
+      case End::inside:
+        return Side::inside;
+      case End::at_edge:
+        ++question.ray;
+        question.winding = 0;
+        question.walk = {};
+    }
   }
   return Side::unknown;
 }
 
 bool in_sight(const Kernels& kernels, const ImageView& body, Vec3d from, Vec3d to,
-              SearchScratch& scratch, Pace& pace) noexcept {
+              Pace& pace) noexcept {
   constexpr double kEnd = 1e-3;  // of the way
   const double length = norm(to - from);
   if (!(length > 0)) return true;
@@ -133,37 +148,23 @@ bool in_sight(const Kernels& kernels, const ImageView& body, Vec3d from, Vec3d t
   const Vec3d side = across(way);
   const Mat3d axes{side, cross(way, side), way};
   bool met = false;
+  Walk walk;
   const Box box = box_along(from, axes, beyond);
-  const bool complete =
-      visit_touched(kernels, body, box, scratch, pace, [&](const RegionTriangle& t) {
-        const Meeting m = meet(t, from, axes);
-        const bool before_end = m.way >= 0 && m.way < end;
-        const bool enters = !m.edge && !m.outwards && m.way >= end && m.way < beyond;
-        met = m.passed && (before_end || enters);
-        return !met;
-      });
+  const bool complete = visit_touched(kernels, body, box, walk, pace, [&](const RegionTriangle& t) {
+    const Meeting m = meet(t, from, axes);
+    const bool before_end = m.way >= 0 && m.way < end;
+    const bool enters = !m.edge && !m.outwards && m.way >= end && m.way < beyond;
+    met = m.passed && (before_end || enters);
+    return !met;
+  });
   return complete && !met;
 }
 
-Side contained(const Kernels& kernels, const levels::PairState& pair, SearchScratch& scratch,
-               Pace& pace) noexcept {
-  const Mat3d& r = pair.b_in_a.rotation;
-  const Vec3d t = pair.b_in_a.translation;
-  if (is_one(*pair.image_a)) {
-    const Vec3d of_a = pair.scale_a * vec3d(pair.image_a->region_triangles[0].corners);
-    const Vec3d in_b = (1.0 / pair.scale_b) * (transpose(r) * (of_a - t));
-    const Side side = side_of(kernels, *pair.image_b, in_b, scratch, pace);
-    if (side != Side::outside) return side;
-  }
-  if (is_one(*pair.image_b)) {
-    const Vec3d of_b = pair.scale_b * vec3d(pair.image_b->region_triangles[0].corners);
-    const Vec3d in_a = (1.0 / pair.scale_a) * (r * of_b + t);
-    return side_of(kernels, *pair.image_a, in_a, scratch, pace);
-  }
-  return Side::outside;
-}
-
 namespace {
+
+/// In a warm tick that a budget limits, of what it has left: questions can wait, and bodies may
+/// touch elsewhere.
+constexpr double kMostAsked = 0.5;
 
 bool crosses(const Work& work, std::uint32_t pair) noexcept {
   for (const Active& item : work.active()) {
@@ -179,14 +180,80 @@ bool is_near(const Work& work, std::uint32_t pair) noexcept {
   return false;
 }
 
-void settle_side(Work& work, std::uint32_t pair) noexcept {
-  QueryMemory& memory = work.memory;
-  Containment& kept = memory.containment[pair];
-  if (!kept.doubtful || crosses(work, pair)) return;
-  const Side side = contained(*memory.kernels, memory.pairs[pair], *memory.search, work.pace);
+void ask(Containment& kept, const levels::PairState& pair, bool of_b) noexcept {
+  const Mat3d& r = pair.b_in_a.rotation;
+  const Vec3d t = pair.b_in_a.translation;
+  const ImageView& asked_of = of_b ? *pair.image_b : *pair.image_a;
+  const Vec3d vertex =
+      (of_b ? pair.scale_b : pair.scale_a) * vec3d(asked_of.region_triangles[0].corners);
+  kept.asked = true;
+  kept.of_b = of_b;
+  kept.question = {.point = of_b ? (1.0 / pair.scale_a) * (r * vertex + t)
+                                 : (1.0 / pair.scale_b) * (transpose(r) * (vertex - t)),
+                   .walk = {}};
+}
+
+/// @return Side::unknown where the question is still open, or has no answer
+Side answer(Work& work, Containment& kept, const levels::PairState& pair) noexcept {
+  while (true) {
+    const ImageView& asked_of = kept.of_b ? *pair.image_b : *pair.image_a;
+    const ImageView& around = kept.of_b ? *pair.image_a : *pair.image_b;
+    const Side side = is_one(asked_of)
+                          ? side_of(*work.memory.kernels, around, kept.question, work.pace)
+                          : Side::outside;
+    if (side == Side::outside && !kept.of_b) {
+      ask(kept, pair, true);
+      continue;
+    }
+    kept.asked = side == Side::unknown && kept.question.ray < kRayCount;
+    return side;
+  }
+}
+
+void settle_side(Work& work, std::uint32_t index) noexcept {
+  const levels::PairState& pair = work.memory.pairs[index];
+  Containment& kept = work.memory.containment[index];
+  const bool doubtful = kept.doubtful || (kept.unseen && kept.inside);
+  if ((!doubtful && !kept.asked) || crosses(work, index)) return;
+  if (!kept.asked) {
+    ask(kept, pair, false);
+    kept.doubtful = kept.unseen = false;
+  }
+  if (work.demand.limited && !work.swept) work.limit_to(kMostAsked);
+  const Side side = answer(work, kept, pair);
+  work.pace.no_limit();
+  if (kept.asked) return;
   kept.inside = side == Side::inside;
-  kept.doubtful = side == Side::unknown;
+  kept.doubtful |= side == Side::unknown;
   kept.nearest = {};
+}
+
+/// A pair that leads out, measured at the present poses: that of the tick before, else about the
+/// nearest of sixteen that lie apart, where there are units for it.
+void look_for_way_out(Work& work, std::uint32_t pair) noexcept {
+  Containment& kept = work.memory.containment[pair];
+  if (!kept.inside || is_near(work, pair)) return;
+  const PairFrame& frame = work.memory.frames[pair];
+  if (kept.nearest.known()) {
+    SearchScratch& scratch = *work.memory.search;
+    scratch.batch_a[0] = kept.nearest.a;
+    scratch.batch_b[0] = kept.nearest.b;
+    float distances[kBatch];
+    measure(*work.memory.kernels, frame, scratch, work.pace, 1, distances);
+    kept.nearest.distance = distances[0];
+  } else if (can_look(frame) && work.units_left() >= static_cast<double>(kUnitsOfLooks)) {
+    Looks looks;
+    look_everywhere(frame, looks);
+    kept.nearest = nearest_of(work, pair, looks);
+  }
+}
+
+void settle_unseen(Work& work, std::uint32_t pair) noexcept {
+  Containment& kept = work.memory.containment[pair];
+  if (kept.asked) return;
+  kept.doubtful = true;
+  settle_side(work, pair);
+  look_for_way_out(work, pair);
 }
 
 /// Makes a witness known to the report.
@@ -205,20 +272,13 @@ void activate(Work& work, std::uint32_t pair, const Witness& witness) noexcept {
 }
 
 /// The nearest of all pairs of triangles, or of those that the budget does for.
+/// @param best  of the present poses
 Witness nearest_of_all(Work& work, std::uint32_t pair, Witness best) noexcept {
-  const Kernels& kernels = *work.memory.kernels;
   const PairFrame& frame = work.memory.frames[pair];
-  SearchScratch& scratch = *work.memory.search;
-  if (best.known()) {
-    float distances[kBatch];
-    scratch.batch_a[0] = best.a;
-    scratch.batch_b[0] = best.b;
-    measure(kernels, frame, scratch, work.pace, 1, distances);
-    best.distance = distances[0];
-  }
   for (std::uint32_t i = 0; i < frame.a->regions.size() && work.pace.go_on(); ++i) {
     const Reach reach{best.known() ? best.distance : kFarthest, 0};
-    const Bounds found = search(kernels, frame, scratch, work.pace, i, {}, reach);
+    const Bounds found =
+        search(*work.memory.kernels, frame, *work.memory.search, work.pace, i, {}, reach);
     if (found.best.known() && found.best.distance < reach.limit) best = found.best;
   }
   return best;
@@ -227,10 +287,12 @@ Witness nearest_of_all(Work& work, std::uint32_t pair, Witness best) noexcept {
 void find_way_out(Work& work, std::uint32_t pair) noexcept {
   Containment& kept = work.memory.containment[pair];
   if (crosses(work, pair)) {
-    kept.inside = false;
+    kept.inside = kept.asked = false;
     kept.doubtful = true;
   }
-  if (!kept.inside || is_near(work, pair)) return;
+  if (is_near(work, pair)) return;
+  if (kept.unseen && work.pace.go_on()) settle_unseen(work, pair);
+  if (!kept.inside) return;
   kept.nearest = nearest_of_all(work, pair, kept.nearest);
   if (kept.nearest.known()) activate(work, pair, kept.nearest);
 }
@@ -238,11 +300,30 @@ void find_way_out(Work& work, std::uint32_t pair) noexcept {
 }  // namespace
 
 void settle_sides(Work& work) noexcept {
-  for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) settle_side(work, i);
+  for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
+    settle_side(work, i);
+    look_for_way_out(work, i);
+  }
+}
+
+void settle_suspected_sides(Work& work) noexcept {
+  for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
+    const Containment& kept = work.memory.containment[i];
+    if (kept.unseen && kept.suspected && !is_near(work, i)) settle_unseen(work, i);
+  }
 }
 
 void find_ways_out(Work& work) noexcept {
   for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) find_way_out(work, i);
+}
+
+bool may_be_inside(const Work& work) noexcept {
+  for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
+    const Containment& kept = work.memory.containment[i];
+    const bool known = !kept.is_open() && (!kept.inside || kept.nearest.known());
+    if (!known && !is_near(work, i)) return true;
+  }
+  return false;
 }
 
 }  // namespace palpate::regions

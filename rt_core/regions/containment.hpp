@@ -13,22 +13,48 @@ struct Work;
 
 enum class Side : std::uint8_t { unknown, outside, inside };
 
+/// Nodes of one tree that are still to be visited; depth first.
+struct Walk {
+  std::uint32_t size = 1;  ///< of nodes; begins with the root
+  std::uint32_t nodes[image::kMaxRegionDepth * image::kRegionWidth + 1] = {};
+};
+
+/// Directions that are tried, at most.
+inline constexpr std::uint32_t kRayCount = 3;
+
+/// A question for the side of a point, which is answered in as many ticks as it takes: in the
+/// coordinates of the surface's image, where neither of them moves.
+struct SideQuestion {
+  Vec3d point{};
+  std::uint32_t ray = 0;  ///< which direction is being tried
+  int winding = 0;        ///< triangles passed outwards less those passed inwards
+  Walk walk;
+};
+
 /// What is kept of a pair from tick to tick.
 struct Containment {
-  bool inside = false;   ///< one body is inside the other
-  bool doubtful = true;  ///< a jump, or surfaces that may have passed through each other since
-  Witness nearest;       ///< inside, and farther than delta from the surface: the nearest pair
+  bool inside = false;     ///< one body is inside the other
+  bool doubtful = true;    ///< a jump, or surfaces that may have passed through each other since
+  bool unseen = false;     ///< that they have is not ruled out: asked when nothing is felt
+  bool suspected = false;  ///< it looks as if one were inside the other (scout.hpp)
+  bool asked = false;      ///< `question` is open, of the bodies as they were when it was asked
+  bool of_b = false;       ///< whether b's first vertex is inside a; else a's inside b
+  SideQuestion question;   ///< until surfaces cross again its answer holds
+  Witness nearest;         ///< inside, and farther than delta from the surface: the nearest pair
+
+  /// `inside` is as it was, and may be so no more.
+  [[nodiscard]] bool is_open() const noexcept { return doubtful || unseen || asked; }
 };
 
 /// On which side of a closed surface a point lies: inside where a ray from it passes through more
 /// triangles outwards than inwards. Shared edges are passed once, for both triangles see them in
 /// the same numbers; a ray that meets an edge exactly is given up for another direction. A surface
-/// that faces inwards, a room, has no inside.
-/// @param point  image coordinates of the body
-/// An open surface has no inside either. Unknown where the budget or all directions are used up.
+/// that faces inwards, a room, has no inside. An open surface has no inside either.
+/// @param question  as new, or as a call has left it that the pace ended
+/// @return unknown where the pace ended it, or, with `ray` at kRayCount, all directions are used up
 /// Cost: a unit for each node whose box the ray passes through, for at most three rays.
-[[nodiscard]] Side side_of(const Kernels& kernels, const ImageView& body, Vec3d point,
-                           SearchScratch& scratch, Pace& pace) noexcept;
+[[nodiscard]] Side side_of(const Kernels& kernels, const ImageView& body, SideQuestion& question,
+                           Pace& pace) noexcept;
 
 /// Whether a way meets no triangle of a surface. It may end on the surface, seen from inside:
 /// within a thousandth of its end only triangles count through which it would go in, as those of a
@@ -36,21 +62,28 @@ struct Containment {
 /// @param from, to  image coordinates of the body
 /// Cost: a unit for each node whose box the way passes through.
 [[nodiscard]] bool in_sight(const Kernels& kernels, const ImageView& body, Vec3d from, Vec3d to,
-                            SearchScratch& scratch, Pace& pace) noexcept;
+                            Pace& pace) noexcept;
 
-/// Side::inside where a vertex of one body is inside the other, for bodies whose triangles do not
-/// cross: then the whole body is. A body of several components is not asked for: its vertex would
-/// not speak for all of it.
-[[nodiscard]] Side contained(const Kernels& kernels, const levels::PairState& pair,
-                             SearchScratch& scratch, Pace& pace) noexcept;
-
-/// Settles for every pair whether one body is inside the other where that is in doubt: unless they
-/// cross, for surfaces that cross have no inside to speak of, and are looked at once they have
-/// parted. Cost: contained(), for each pair in doubt.
+/// Settles for every pair whether one body is inside the other, where that is in doubt: where a
+/// vertex of one is inside the other, the whole body is, unless they cross. Surfaces that cross
+/// have no inside to speak of, and are looked at once they have parted. A body of several
+/// components is not asked for: its vertex would not speak for all of it. Of what is inside and
+/// near no surface some pair is measured, about the nearest. Cost: side_of(), twice, for each pair
+/// in doubt; but at most half of what a budget has left unless the bodies have jumped, the rest in
+/// the ticks to come. Then kUnitsOfLooks.
 void settle_sides(Work& work) noexcept;
 
+/// The same where nothing is felt and one body seems to be inside the other, as a body is that has
+/// gone through a surface by more than it is wide between two ticks.
+void settle_suspected_sides(Work& work) noexcept;
+
 /// Makes the nearest pair of all an active region's witness where one body is inside the other and
-/// no region is near the surface. Cost: what is left of the budget at most.
+/// no region is near the surface. Where nothing is felt, and it is not proved that the bodies have
+/// not passed through each other since the tick before, it settles that first.
+/// Cost: what is left of the budget at most.
 void find_ways_out(Work& work) noexcept;
+
+/// Whether bodies that feel nothing may still lie one inside the other. O(active) a pair
+[[nodiscard]] bool may_be_inside(const Work& work) noexcept;
 
 }  // namespace palpate::regions

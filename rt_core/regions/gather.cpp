@@ -44,13 +44,16 @@ bool sweep_if_lost(Work& work, std::uint32_t index) noexcept {
   if (!pair.fresh && last_motion(pair) <= far) return false;
   pair.fresh = false;
   leave_no_trail(pair);
+  const std::size_t regions = pair.image_a->regions.size();
   work.swept = true;
   work.room = Work::kLeastRoom;  // there is much to search, and how the bodies move is not known
   memory.containment[index].doubtful = true;
   memory.pursuit.surveyed = 1;  // what a survey had left of another place is none of this one
+  for (double& far_until : memory.scouted.subspan(memory.first_state[index], regions))
+    far_until = 0;
   // However small the budget is for the rest of the tick, it knows where the bodies touch.
   if (work.demand.limited) scout(work, index, kMostScouted);
-  const std::span<float> swept = memory.swept.first(pair.image_a->regions.size());
+  const std::span<float> swept = memory.swept.first(regions);
   limit_sweep(work, swept.size());
   sweep(*memory.kernels, memory.frames[index], *memory.search, work.pace,
         static_cast<float>(pair.delta + margin_of(pair)), swept);
@@ -86,6 +89,7 @@ void gather_regions(Work& work, std::uint32_t index, bool swept) noexcept {
       if (lower < far) work.result.open_m += (far - lower) * pair.unit_m;
       continue;
     }
+    if (lower <= 0) memory.containment[index].unseen = true;
     memory.active[work.count++] = {.rest = float_below(static_cast<double>(state.rest) - moved_by),
                                    .moved = static_cast<float>(moved_by),
                                    .way = {},

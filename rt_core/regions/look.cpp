@@ -194,6 +194,16 @@ void look_over(const PairFrame& frame, std::uint32_t region, std::uint32_t from,
   out.count = count;
 }
 
+void look_everywhere(const PairFrame& frame, Looks& out) noexcept {
+  const auto regions = static_cast<std::uint32_t>(frame.a->region_runs.size());
+  const std::uint32_t count = regions < kMostLooks ? regions : kMostLooks;
+  for (out.count = 0; out.count < count; ++out.count) {
+    const image::RegionRun& run = frame.a->region_runs[out.count * (regions / count)];
+    out.number[out.count] = out.count;
+    out.pairs[out.count] = {run.first + run.count / 2, 0, 0};
+  }
+}
+
 void look_beside(const PairFrame& frame, std::uint32_t region, std::uint32_t triangle,
                  std::uint32_t count, Looks& out) noexcept {
   PALPATE_ASSERT(count <= kMostLooks);

@@ -80,6 +80,12 @@ void look_from(const PairFrame& frame, Looks& looks) noexcept;
 void look_over(const PairFrame& frame, std::uint32_t region, std::uint32_t from,
                std::uint32_t count, Looks& out) noexcept;
 
+/// Looks from a triangle of each of sixteen regions that lie apart, or of all where there are
+/// fewer.
+/// @param out  before any step
+/// Precondition: can_look(frame). O(1)
+void look_everywhere(const PairFrame& frame, Looks& out) noexcept;
+
 /// Looks from the triangles on both sides of one of the region's: neighbours in a run are
 /// neighbours on the surface. Fewer than `count` where the region has no more.
 /// @param triangle  of a, not looked from itself

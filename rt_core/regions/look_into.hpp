@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A region's next looks, into a batch of pairs to be measured.
+// Looks, and the pairs that they find measured.
 #pragma once
 
 #include "rt_core/regions/look.hpp"
@@ -31,6 +31,30 @@ void look_into(Work& work, std::uint32_t index, std::uint32_t count, auto& batch
   look_from(work.frame_of(item), looks);
   work.kept_of(item).seeds.dives += count;
   add_looks(work, index, looks, batch);
+}
+
+/// Looks and the pairs that they find measured, at most.
+inline constexpr std::uint64_t kUnitsOfLooks = kMostLooks / kLooksPerUnit + kBatchUnits;
+
+/// Of what a pair's looks find. Cost: kUnitsOfLooks.
+/// @param looks  before any step; at least one
+inline Witness nearest_of(Work& work, std::uint32_t pair, Looks& looks) noexcept {
+  const PairFrame& frame = work.memory.frames[pair];
+  SearchScratch& scratch = *work.memory.search;
+  look_from(frame, looks);
+  work.pace.charge(looks.count / kLooksPerUnit);
+  for (std::uint32_t i = 0; i < looks.count; ++i) {
+    scratch.batch_a[i] = looks.pairs[i].a;
+    scratch.batch_b[i] = looks.pairs[i].b;
+  }
+  static_assert(kMostLooks == kBatch);
+  float distances[kBatch];
+  measure(*work.memory.kernels, frame, scratch, work.pace, looks.count, distances);
+  std::uint32_t nearest = 0;
+  for (std::uint32_t i = 1; i < looks.count; ++i) {
+    if (distances[i] < distances[nearest]) nearest = i;
+  }
+  return {looks.pairs[nearest].a, looks.pairs[nearest].b, distances[nearest]};
 }
 
 }  // namespace palpate::regions

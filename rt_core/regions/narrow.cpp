@@ -80,7 +80,8 @@ class Narrowing {
         search_or_survey();
       } else {
         track(work_);
-        scout_where_lost();
+        scout_where_none_is_felt();
+        settle_suspected_sides(work_);
       }
     }
     begun_ = worth_taking_up();
@@ -98,12 +99,9 @@ class Narrowing {
 
  private:
   /// Fast bodies leave their contacts behind between two ticks.
-  void scout_where_lost() noexcept {
-    for (const Active& item : work_.active()) {
-      if (work_.is_felt(item) && work_.is_present(item)) return;
-    }
+  void scout_where_none_is_felt() noexcept {
     for (std::uint32_t i = 0; i < work_.memory.pairs.size() && work_.pace.go_on(); ++i) {
-      if (margin_of(work_.memory.pairs[i]) > 0) continue;
+      if (margin_of(work_.memory.pairs[i]) > 0 || !may_touch_unfelt(i)) continue;
       const std::uint32_t state = scout(work_, i, kMostScouted);
       const std::uint32_t index = state != image::kNone ? work_.active_of(state) : image::kNone;
       if (index == image::kNone) continue;
@@ -111,6 +109,16 @@ class Narrowing {
       work_.widen(work_.active()[index]);
     }
     work_.truncated = !work_.pace.go_on();
+  }
+
+  bool may_touch_unfelt(std::uint32_t pair) const noexcept {
+    bool open = false;
+    for (const Active& item : work_.active()) {
+      if (item.pair != pair) continue;
+      if (work_.is_felt(item) && work_.is_present(item)) return false;
+      open |= item.width > kClosed;
+    }
+    return open;
   }
 
   /// An interval may stay open by this much, but not down to zero: what crosses has a depth, of

@@ -76,6 +76,8 @@ struct QueryMemory {
   /// [states] A bound of each region's distance and most_way_of() when it held, added: what is left
   /// of it tells far regions without their states.
   std::span<double> lasting;
+  /// [states] Until most_way_of() is so much a scout does not look at the region again (scout.hpp).
+  std::span<double> scouted;
   SearchScratch* search = nullptr;
   CrossingScratch* crossing = nullptr;
   Unfinished* unfinished = nullptr;  ///< from tick to tick
@@ -96,6 +98,8 @@ struct QueryResult {
   double s_worst = 0;             ///< largest radius of a region that is not resolved, relative
   std::uint64_t near_regions = 0;
   std::uint64_t queries = 0;  ///< work units
+  bool maybe_apart =
+      false;  ///< a contact tells the way out of a body that may have been left since
   bool truncated_by_time = false;
   bool truncated_by_units = false;
   bool truncated_by_memory = false;

@@ -96,12 +96,21 @@ class Report {
     // Touching, the outward normal of b's is right whichever side a comes from.
     const Vec3d normal =
         distance > kTouching ? (1 / distance) * apart : facing_at(pair, witness.b, on_a);
-    const bool flip = distance > kTouching && (memory_.containment[item.pair].inside ||
-                                               is_behind(item, on_a, on_a - apart, normal));
+    const Containment& kept = memory_.containment[item.pair];
+    const bool flip =
+        distance > kTouching && (kept.inside || is_behind(item, on_a, on_a - apart, normal));
+    if (flip && kept.inside && kept.is_open()) leave_open(pair, distance);
     const Felt felt = flip ? Felt{-normal, 1} : at_border(item, on_a, on_a - apart, normal);
     add(item, {on_a, on_a - apart, felt.normal, flip ? -distance : distance,
                pair.image_a->region_triangles[witness.a].piece,
                pair.image_b->region_triangles[witness.b].piece, felt.share});
+  }
+
+  /// It may be as far from b's surface on the outer side.
+  void leave_open(const PairState& pair, double distance) noexcept {
+    const double less = distance < pair.delta ? distance : pair.delta;
+    result_.open_m += (distance + less) * pair.unit_m;
+    result_.maybe_apart = true;
   }
 
   /// The region is nearest to the inner side of b's surface: it has passed through, beside others
@@ -166,7 +175,7 @@ class Report {
     const Vec3d to = edge + (aside < length ? aside / length : 1) * inwards;
     Meter meter({.units = kMostUnits}, {});
     Pace pace(meter);
-    return in_sight(*memory_.kernels, b, from, to, *memory_.search, pace);
+    return in_sight(*memory_.kernels, b, from, to, pace);
   }
 
   static Vec3d in_image_of_b(const PairState& pair, Vec3d point) noexcept {

@@ -3,7 +3,7 @@
 
 #include "rt_core/base/queue.hpp"
 #include "rt_core/convex/simplex.hpp"
-#include "rt_core/regions/look.hpp"
+#include "rt_core/regions/look_into.hpp"
 #include "rt_core/regions/named_box.hpp"
 #include "rt_core/regions/region_triangle.hpp"
 
@@ -22,10 +22,9 @@ constexpr float kLongBox = 4;
 constexpr std::uint32_t kAlongBox = 4;
 /// Boxes that wait; what would be more is not looked into.
 constexpr std::uint32_t kMostWaiting = 128;
-
-static_assert(kMostLooks == kBatch);
-/// Sixteen looks and their batch, which are never begun with less.
-constexpr std::uint64_t kFewestUnits = kMostLooks / kLooksPerUnit + kBatchUnits;
+/// A region whose sixteen looks have found nothing near enough is not looked at again before it may
+/// have come near, but for no more than so many delta of motion: looks do not see all of it.
+constexpr float kLasts = 2;
 
 struct Place {
   float apart = 0;  ///< of what is nearest below it, about
@@ -49,10 +48,12 @@ float distance_from(Vec3f place, const image::RegionTriangle& t) noexcept {
 class Scout {
  public:
   Scout(Work& work, std::uint32_t pair) noexcept
-      : kernels_(*work.memory.kernels),
+      : work_(work),
+        pair_(pair),
         frame_(work.memory.frames[pair]),
-        scratch_(*work.memory.search),
         pace_(work.pace),
+        first_state_(work.memory.first_state[pair]),
+        way_(most_way_of(work.memory.pairs[pair])),
         limit_(static_cast<float>(work.memory.pairs[pair].delta)),
         unit_of_b_(sqrt_of(frame_.scale2_b)),
         waiting_(places_, Nearer{}) {}
@@ -69,17 +70,22 @@ class Scout {
   }
 
  private:
-  /// From a triangle of each of sixteen regions that lie apart.
   Witness look_everywhere() noexcept {
-    const auto regions = static_cast<std::uint32_t>(frame_.a->region_runs.size());
-    const std::uint32_t count = regions < kMostLooks ? regions : kMostLooks;
     Looks looks;
-    while (looks.count < count) {
-      const image::RegionRun& run = frame_.a->region_runs[looks.count * (regions / count)];
-      looks.number[looks.count] = looks.count;
-      looks.pairs[looks.count++] = {run.first + run.count / 2, 0, 0};
-    }
-    return nearest_of(looks);
+    regions::look_everywhere(frame_, looks);
+    const Witness nearest = nearest_of(work_, pair_, looks);
+    std::uint32_t behind = 0;
+    for (std::uint32_t i = 0; i < looks.count; ++i) behind += is_behind(looks.pairs[i]) ? 1u : 0u;
+    work_.memory.containment[pair_].suspected = 2 * behind > looks.count;
+    return nearest.nearer_than(limit_) ? nearest : Witness{};
+  }
+
+  /// Whether the middle of a triangle of a is on the inner side of one of b.
+  bool is_behind(const Witness& pair) const noexcept {
+    const image::RegionTriangle& near = frame_.b->region_triangles[pair.b];
+    const Vec3f place = at_place(frame_.a_to_b, centre_of(frame_.a->region_triangles[pair.a]));
+    const Vec3f away = place - centre_of(near);
+    return dot(normal_of(near), vec3d(&away.x)) < 0;
   }
 
   void visit(std::uint32_t node, Witness& found) noexcept {
@@ -88,9 +94,18 @@ class Scout {
       push_below(node);
       return;
     }
+    double& far_until = work_.memory.scouted[first_state_ + region];
+    if (way_ < far_until) return;
     Looks looks;
     look_over(frame_, region, 0, kMostLooks, looks);
-    found = nearest_of(looks);
+    const Witness nearest = nearest_of(work_, pair_, looks);
+    if (nearest.nearer_than(limit_)) {
+      found = nearest;
+      return;
+    }
+    const float more = nearest.distance - limit_;
+    const float most = kLasts * limit_;
+    far_until = way_ + static_cast<double>(more < most ? more : most);
   }
 
   void push_below(std::uint32_t index) noexcept {
@@ -149,30 +164,12 @@ class Scout {
     return unit_of_b_ * (wide ? distance_from(place, near) : norm(place - centre_of(near)));
   }
 
-  /// Of what is looked up, where it is nearer than the limit.
-  Witness nearest_of(Looks& looks) noexcept {
-    look_from(frame_, looks);
-    const Witness(&pairs)[kMostLooks] = looks.pairs;
-    const std::uint32_t count = looks.count;
-    pace_.charge(count / kLooksPerUnit);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      scratch_.batch_a[i] = pairs[i].a;
-      scratch_.batch_b[i] = pairs[i].b;
-    }
-    float distances[kBatch];
-    measure(kernels_, frame_, scratch_, pace_, count, distances);
-    std::uint32_t nearest = 0;
-    for (std::uint32_t i = 1; i < count; ++i) {
-      if (distances[i] < distances[nearest]) nearest = i;
-    }
-    const Witness found = {pairs[nearest].a, pairs[nearest].b, distances[nearest]};
-    return found.nearer_than(limit_) ? found : Witness{};
-  }
-
-  const Kernels& kernels_;
+  Work& work_;
+  std::uint32_t pair_;
   const PairFrame& frame_;
-  SearchScratch& scratch_;
   Pace& pace_;
+  std::uint32_t first_state_;
+  double way_;
   float limit_;
   float unit_of_b_;
   Place places_[kMostWaiting];
@@ -187,7 +184,7 @@ std::uint32_t scout(Work& work, std::uint32_t pair, double most_units) noexcept 
   if (!can_look(frame) || !work.pace.go_on()) return image::kNone;
   const double left = work.units_left();
   const double units = left < most_units ? left : most_units;
-  if (units < static_cast<double>(kFewestUnits)) return image::kNone;
+  if (units < static_cast<double>(kUnitsOfLooks)) return image::kNone;
   work.pace.limit(static_cast<std::uint64_t>(units));
   const Witness found = Scout(work, pair).run();
   work.pace.no_limit();

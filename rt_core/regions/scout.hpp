@@ -10,7 +10,10 @@ namespace palpate::regions {
 /// left. Descends a's tree alone, always where it seems nearest (best first: Hjaltason and Samet
 /// 1999): the centres of boxes, or of long ones places along them, are looked up in b's proximity
 /// grid (look.hpp), and of a region sixteen triangles, whose pairs are measured. Of surfaces that
-/// fit each other, one look at each of sixteen regions does.
+/// fit each other, one look at each of sixteen regions does; and whether most of those are behind
+/// what is nearest to them makes it suspect that one body is inside the other (containment.hpp).
+/// Regions that have been looked at in vain are passed over in the ticks to come, until they may
+/// have come near: so the scouts of slow bodies get farther from tick to tick.
 ///
 /// Nothing is proved by that. It takes a third of what a search of both trees takes that ends with
 /// the first pair near enough (docs/TRIED.md, "Any contact first").

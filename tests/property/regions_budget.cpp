@@ -300,6 +300,49 @@ TEST(RegionsBudget, after_a_jump_needles_are_found_to_touch) {
   EXPECT_LE(lost, kJumps / 4);
 }
 
+/// A scout of a hundred units does not find where gears touch, and the next one would look at the
+/// same places again: until they do, those that have been looked at in vain are passed over.
+TEST(RegionsBudget, sliding_needles_are_found_to_touch_within_some_ticks) {
+  constexpr double kDeltaOfGears = 0.02;
+  bake::BakeOptions options = options_for(bake::ForEngine::regions);
+  options.delta_rel = kDeltaOfGears;
+  const BakedBody a(gear(60, 1, 0.5), options);
+  const BakedBody b(gear(50, 0.9, 0.5), options);
+  const Settings settings{.engine = EngineKind::regions, .delta_m = kDeltaOfGears};
+  std::mt19937 rng(5);
+  constexpr int kSlides = effort(30, 6);
+  int touching = 0, lost = 0;
+  for (int i = 0; i < kSlides; ++i) {
+    BakedScene exact({a.view, b.view}, {{0, 1}}, settings);
+    BakedScene budgeted({a.view, b.view}, {{0, 1}}, settings);
+    const Vec3d direction = random_unit(rng);
+    const Vec3d axis = random_unit(rng);
+    Pose pose{2.5 * direction, turn(3.0 * random_unit(rng))};
+    const auto distance = [&] {
+      const Pose poses[2] = {pose, {}};
+      const TickResult r = tick_or_fail(*exact.engine, poses);
+      return r.contacts.empty() ? kDeltaOfGears : r.min_distance_m;
+    };
+    while (distance() > 0.4 * kDeltaOfGears) {
+      pose.position_m -= (distance() - 0.3 * kDeltaOfGears) * direction;
+    }
+    for (int t = 0; t < 20; ++t) {
+      if (distance() < kDeltaOfGears) {
+        ++touching;
+        const Pose poses[2] = {pose, {}};
+        const TickResult r = tick_or_fail(*budgeted.engine, poses, {.units = 100});
+        lost += r.contacts.empty() ? 1 : 0;
+      }
+      pose.position_m += 0.2 * kDeltaOfGears * cross(direction, axis);
+      pose.orientation = turn(0.2 * kDeltaOfGears * axis) * pose.orientation;
+    }
+  }
+  RecordProperty("touching", touching);
+  RecordProperty("lost", lost);
+  EXPECT_GT(touching, 8 * kSlides);
+  EXPECT_LT(5 * lost, touching);
+}
+
 /// Jaws pass each other by more than delta a tick and meet in places that have not touched before.
 TEST(RegionsBudget, fast_passes_find_where_they_meet) {
   const Models jaws("jaw_upper", "jaw_lower", 24'000, 0.02);

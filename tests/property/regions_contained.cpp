@@ -6,10 +6,13 @@
 #include <numbers>
 #include <random>
 
+#include "host_bake/models/models.hpp"
 #include "rt_core/engine.hpp"
 #include "rt_core/regions/containment.hpp"
 #include "rt_core/regions/region_triangle.hpp"
+#include "tests/support/answers.hpp"
 #include "tests/support/baked_scene.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/support/placements.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -54,6 +57,111 @@ TEST(RegionsContained, small_body_inside_a_large_one_is_pushed_out_the_nearest_w
     expect_pushed_out(tick_at(scene, 0.7 * axis + aside), axis);    // deep: nothing within delta
     expect_pushed_out(tick_at(scene, 0.885 * axis + aside), axis);  // just below the surface
     EXPECT_TRUE(tick_at(scene, 1.5 * axis + aside).contacts.empty());
+  }
+}
+
+/// A ray through a body may take more units than a tick has.
+TEST(RegionsContained, small_budget_does_not_rule_out_what_it_has_no_time_to_look_for) {
+  const BakedBody small(gear(12, 0.1, 0.05), kRegions);
+  const BakedBody large(gear(40, 1, 0.6), kRegions);
+  constexpr int kTicks = 50;
+  constexpr std::uint64_t kFewest = 16;  // units of sixteen looks and their batch, and some more
+  for (const std::uint64_t units : {1u, 4u, 16u, 32u, 64u, 128u, 256u}) {
+    BakedScene scene({small.view, large.view}, {{0, 1}}, settings());
+    int found = 0;
+    for (int i = 0; i < kTicks; ++i) {
+      const Pose poses[2] = {{{0.4, 0.03, 1e-4 * i}, {}}, {}};
+      const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
+      EXPECT_NE(r.certificate.contact, ContactStatus::ruled_out) << units;
+      found += r.contacts.empty() ? 0 : 1;
+    }
+    if (units >= kFewest) {
+      EXPECT_GT(found, kTicks / 2) << units;
+    }
+  }
+}
+
+/// What moves by more than it is wide may be on either side, with no tick in which it crosses.
+TEST(RegionsContained, what_passes_through_a_surface_between_two_ticks_is_inside) {
+  const BakedBody small(ball(8, 10, 0.01), kRegions);
+  const BakedBody large(box(1, 1, 1), kRegions);
+  Settings thin = settings();
+  thin.delta_m = 0.002;
+  for (const std::uint64_t units : {Budget{}.units, std::uint64_t{500}, std::uint64_t{100}}) {
+    BakedScene scene({small.view, large.view}, {{0, 1}}, thin);
+    for (int i = 0; i < 20; ++i) {
+      const double z = 1.2 - 0.031 * (i < 12 ? i : 24 - i);
+      const Pose poses[2] = {{{0.02, 0.03, z}, {}}, {}};
+      const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
+      EXPECT_EQ(r.certificate.contact == ContactStatus::found, z < 1) << z << " with " << units;
+    }
+  }
+}
+
+/// Ways through each other, with steps from a tenth of delta to what counts as a jump, against
+/// exact answers that know nothing of the tick before.
+TEST(RegionsContained, no_way_in_is_denied_and_no_way_out) {
+  constexpr double kThin = 0.004;
+  Settings thin = settings();
+  thin.delta_m = kThin;
+  std::vector<BakedBody> large;
+  large.emplace_back(bumpy_ball(24, 30, 1), kRegions);
+  large.emplace_back(gear(12, 1, 0.4), kRegions);
+  large.emplace_back(bake::make_model("golf_shell", 4'000), kRegions);
+  std::vector<BakedBody> small;
+  small.emplace_back(ball(6, 8, 0.01), kRegions);
+  small.emplace_back(gear(6, 0.04, 0.02), kRegions);
+  small.emplace_back(bumpy_ball(10, 12, 0.2), kRegions);
+  struct Count {
+    std::uint64_t units;
+    int denied = 0, missed = 0, made_up = 0;
+  };
+  Count counts[] = {{Budget{}.units}, {2000}, {300}, {60}};
+  int contained = 0;
+  std::mt19937 rng(3);
+  std::uniform_real_distribution<double> from_0_to_1;
+  const auto tick_of = [&](int way) {
+    const BakedBody& a = small[std::size_t(way) % small.size()];
+    const BakedBody& b = large[std::size_t(way) / small.size() % large.size()];
+    const auto scene = [&] { return BakedScene({a.view, b.view}, {{0, 1}}, thin); };
+    std::vector<BakedScene> scenes;
+    while (scenes.size() < std::size(counts)) scenes.push_back(scene());
+    const double length = kThin * std::pow(10, -1 + 2.2 * from_0_to_1(rng));
+    const Vec3d step = length * random_unit(rng);
+    const Quat turned = turn(length * from_0_to_1(rng) * random_unit(rng));
+    const double from_centre = b.view.header->radius_m * (0.5 + 0.6 * from_0_to_1(rng));
+    Pose pose{from_centre * random_unit(rng), turn(3.0 * random_unit(rng))};
+    constexpr int kTicks = 40;
+    pose.position_m -= 0.5 * kTicks * step;
+    for (int t = 0; t < kTicks; ++t) {
+      const Pose poses[2] = {pose, {}};
+      const TickResult truth = tick_or_fail(*scene().engine, poses);
+      const bool touches = !truth.contacts.empty();
+      const double distance = !touches ? kThin : std::max(0.0, truth.min_distance_m);
+      contained += touches && truth.min_distance_m < -kThin ? 1 : 0;
+      for (std::size_t k = 0; k < scenes.size(); ++k) {
+        Count& count = counts[k];
+        const TickResult r = tick_or_fail(*scenes[k].engine, poses, {.units = count.units});
+        expect_certified(r, distance, kThin);
+        count.denied += touches && r.certificate.contact == ContactStatus::ruled_out ? 1 : 0;
+        count.missed += touches && r.contacts.empty() ? 1 : 0;
+        count.made_up += !touches && !r.contacts.empty() ? 1 : 0;
+      }
+      pose.position_m += step;
+      pose.orientation = turned * pose.orientation;
+    }
+  };
+  constexpr int kWays = effort(90, 18);
+  for (int way = 0; way < kWays; ++way) tick_of(way);
+  EXPECT_GT(contained, 10 * kWays);
+  for (const Count& c : counts) {
+    RecordProperty("missed_" + std::to_string(c.units), c.missed);
+    RecordProperty("made_up_" + std::to_string(c.units), c.made_up);
+    EXPECT_EQ(c.denied, 0) << c.units;
+    if (c.units >= 2000) {
+      EXPECT_EQ(c.missed, 0) << c.units;
+      EXPECT_EQ(c.made_up, 0) << c.units;
+    }
   }
 }
 
@@ -117,7 +225,6 @@ TEST(RegionsContained, side_of_a_point_is_that_of_the_shape) {
   const double* centre = body.view.header->centre_m;
   std::mt19937 rng(11);
   std::uniform_real_distribution<double> coordinate(-1.4, 1.4);
-  const auto scratch = std::make_unique<regions::SearchScratch>();
   int inside = 0;
   int seen_inside = 0;
   Vec3d last{2, 0, 0};
@@ -126,14 +233,19 @@ TEST(RegionsContained, side_of_a_point_is_that_of_the_shape) {
     const Vec3d p{coordinate(rng), coordinate(rng), coordinate(rng)};
     const double distance = norm(radius * p + Vec3d{centre[0], centre[1], centre[2]});
     if (distance > 0.7 && distance < 1.3) continue;  // the bumps are here
+    // In as many ticks as it takes: all at once, of seven units, of one.
+    regions::Side side = regions::Side::unknown;
+    regions::SideQuestion question{.point = p, .walk = {}};
+    while (side == regions::Side::unknown) {
+      Meter meter({.units = i % 3 == 0 ? Budget{}.units : i % 3 == 1 ? 7u : 1u}, {});
+      regions::Pace pace(meter);
+      side = regions::side_of(regions::best_kernels(), body.view, question, pace);
+    }
     Meter meter({}, {});
     regions::Pace pace(meter);
-    const regions::Side side =
-        regions::side_of(regions::best_kernels(), body.view, p, *scratch, pace);
     ASSERT_EQ(side, distance < 1 ? regions::Side::inside : regions::Side::outside) << i;
     inside += side == regions::Side::inside;
-    const bool seen =
-        regions::in_sight(regions::best_kernels(), body.view, last, p, *scratch, pace);
+    const bool seen = regions::in_sight(regions::best_kernels(), body.view, last, p, pace);
     if (side != last_side) {
       EXPECT_FALSE(seen) << i;
     } else if (side == regions::Side::inside) {
