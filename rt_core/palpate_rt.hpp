@@ -164,7 +164,7 @@ struct Certificate {
                              ///< no contact is reported, of delta. It counts what detail was left
                              ///< out before baking (Header::source_deviation_rel). Regions engine:
                              ///< overlap counts as 0; where the budget ended a tick nothing is
-                             ///< said of how deep it is
+                             ///< said of how deep it is, but where that may be none it is counted
   double s_worst =
       0;  ///< largest weighted surface deviation left unrefined, relative to the radius
   /// Regions engine: the sizes of the regions' penalty forces, summed, are within this of the true

@@ -129,7 +129,8 @@ struct Demand {
 /// holds its distance, and every witness nearer than delta is a contact, or as many of them as
 /// there is time to report (crowd.hpp). Where triangles cross, the pieces that they belong to give
 /// the depth and the curve in which they do the direction (crossing.hpp); for that, at most half of
-/// a budget is left.
+/// a budget is left. Whether one body is inside the other is asked wherever they may have passed
+/// through each other, in as many ticks as the budget takes for it (containment.hpp).
 ///
 /// A contact's pieces are those of level 0 that hold the witnesses. Stages and counts go to the
 /// tally. Cost: the budget, plus O(regions), plus one witness of each near region.

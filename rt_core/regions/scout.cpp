@@ -37,10 +37,13 @@ struct Nearer {
   }
 };
 
+Vec3d widened(Vec3f v) noexcept {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
 /// Of a place from a triangle, in image coordinates.
 float distance_from(Vec3f place, const image::RegionTriangle& t) noexcept {
-  const Vec3d from = {static_cast<double>(place.x), static_cast<double>(place.y),
-                      static_cast<double>(place.z)};
+  const Vec3d from = widened(place);
   const Vec3d corners[3] = {corner(t, 0, 1) - from, corner(t, 1, 1) - from, corner(t, 2, 1) - from};
   return static_cast<float>(sqrt_of(convex::nearest_on_triangle(corners, 0, 1, 2).squared));
 }
@@ -84,8 +87,7 @@ class Scout {
   bool is_behind(const Witness& pair) const noexcept {
     const image::RegionTriangle& near = frame_.b->region_triangles[pair.b];
     const Vec3f place = at_place(frame_.a_to_b, centre_of(frame_.a->region_triangles[pair.a]));
-    const Vec3f away = place - centre_of(near);
-    return dot(normal_of(near), vec3d(&away.x)) < 0;
+    return dot(normal_of(near), widened(place - centre_of(near))) < 0;
   }
 
   void visit(std::uint32_t node, Witness& found) noexcept {

@@ -276,24 +276,37 @@ TEST(RegionsBudget, however_little_there_is_after_a_jump_some_contact_is_known) 
   EXPECT_EQ(lost, 0);
 }
 
-/// Flanks of a gear, each a region of its own and fifty tolerances long, may be near anywhere along
-/// them. Looked from at their centres alone half of these jumps felt nothing.
+/// Whose flanks are regions of their own, fifty tolerances long.
+struct Gears {
+  static constexpr double kDelta = 0.02;
+
+  Gears(std::uint32_t teeth_of_a, std::uint32_t teeth_of_b)
+      : a(gear(teeth_of_a, 1, 0.5), options()), b(gear(teeth_of_b, 0.9, 0.5), options()) {}
+  BakedScene scene() const {
+    return {{a.view, b.view}, {{0, 1}}, {.engine = EngineKind::regions, .delta_m = kDelta}};
+  }
+  static bake::BakeOptions options() {
+    bake::BakeOptions options = options_for(bake::ForEngine::regions);
+    options.delta_rel = kDelta;
+    return options;
+  }
+
+  BakedBody a, b;
+};
+
+/// Flanks may be near anywhere along them. Looked from at their centres alone half of these jumps
+/// felt nothing.
 TEST(RegionsBudget, after_a_jump_needles_are_found_to_touch) {
-  constexpr double kDeltaOfGears = 0.02;
-  bake::BakeOptions options = options_for(bake::ForEngine::regions);
-  options.delta_rel = kDeltaOfGears;
-  const BakedBody a(gear(24, 1, 0.5), options);
-  const BakedBody b(gear(20, 0.9, 0.5), options);
-  const Settings settings{.engine = EngineKind::regions, .delta_m = kDeltaOfGears};
+  const Gears gears(24, 20);
   std::mt19937 rng(5);
   constexpr int kJumps = effort(40, 10);
   int lost = 0;
   for (int i = 0; i < kJumps; ++i) {
     const Vec3d direction = random_unit(rng);
     const Quat orientation = turn(3.0 * random_unit(rng));
-    const Pose poses[2] = {approach(a.mesh, b.mesh, 0.5 * kDeltaOfGears, 4, direction, orientation),
-                           {}};
-    BakedScene scene({a.view, b.view}, {{0, 1}}, settings);
+    const Pose poses[2] = {
+        approach(gears.a.mesh, gears.b.mesh, 0.5 * Gears::kDelta, 4, direction, orientation), {}};
+    BakedScene scene = gears.scene();
     lost += tick_or_fail(*scene.engine, poses, {.units = 200}).contacts.empty() ? 1 : 0;
   }
   RecordProperty("lost", lost);
@@ -303,38 +316,34 @@ TEST(RegionsBudget, after_a_jump_needles_are_found_to_touch) {
 /// A scout of a hundred units does not find where gears touch, and the next one would look at the
 /// same places again: until they do, those that have been looked at in vain are passed over.
 TEST(RegionsBudget, sliding_needles_are_found_to_touch_within_some_ticks) {
-  constexpr double kDeltaOfGears = 0.02;
-  bake::BakeOptions options = options_for(bake::ForEngine::regions);
-  options.delta_rel = kDeltaOfGears;
-  const BakedBody a(gear(60, 1, 0.5), options);
-  const BakedBody b(gear(50, 0.9, 0.5), options);
-  const Settings settings{.engine = EngineKind::regions, .delta_m = kDeltaOfGears};
+  constexpr double kTouch = Gears::kDelta;
+  const Gears gears(60, 50);
   std::mt19937 rng(5);
   constexpr int kSlides = effort(30, 6);
   int touching = 0, lost = 0;
   for (int i = 0; i < kSlides; ++i) {
-    BakedScene exact({a.view, b.view}, {{0, 1}}, settings);
-    BakedScene budgeted({a.view, b.view}, {{0, 1}}, settings);
+    BakedScene exact = gears.scene();
+    BakedScene budgeted = gears.scene();
     const Vec3d direction = random_unit(rng);
     const Vec3d axis = random_unit(rng);
     Pose pose{2.5 * direction, turn(3.0 * random_unit(rng))};
     const auto distance = [&] {
       const Pose poses[2] = {pose, {}};
       const TickResult r = tick_or_fail(*exact.engine, poses);
-      return r.contacts.empty() ? kDeltaOfGears : r.min_distance_m;
+      return r.contacts.empty() ? kTouch : r.min_distance_m;
     };
-    while (distance() > 0.4 * kDeltaOfGears) {
-      pose.position_m -= (distance() - 0.3 * kDeltaOfGears) * direction;
+    while (distance() > 0.4 * kTouch) {
+      pose.position_m -= (distance() - 0.3 * kTouch) * direction;
     }
     for (int t = 0; t < 20; ++t) {
-      if (distance() < kDeltaOfGears) {
+      if (distance() < kTouch) {
         ++touching;
         const Pose poses[2] = {pose, {}};
         const TickResult r = tick_or_fail(*budgeted.engine, poses, {.units = 100});
         lost += r.contacts.empty() ? 1 : 0;
       }
-      pose.position_m += 0.2 * kDeltaOfGears * cross(direction, axis);
-      pose.orientation = turn(0.2 * kDeltaOfGears * axis) * pose.orientation;
+      pose.position_m += 0.2 * kTouch * cross(direction, axis);
+      pose.orientation = turn(0.2 * kTouch * axis) * pose.orientation;
     }
   }
   RecordProperty("touching", touching);

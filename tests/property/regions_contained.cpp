@@ -143,6 +143,10 @@ TEST(RegionsContained, no_way_in_is_denied_and_no_way_out) {
         Count& count = counts[k];
         const TickResult r = tick_or_fail(*scenes[k].engine, poses, {.units = count.units});
         expect_certified(r, distance, kThin);
+        if (!r.contacts.empty()) {
+          EXPECT_LE(std::abs(std::max(0.0, r.min_distance_m) - distance),
+                    r.certificate.error_bound_m + 2e-6);
+        }
         count.denied += touches && r.certificate.contact == ContactStatus::ruled_out ? 1 : 0;
         count.missed += touches && r.contacts.empty() ? 1 : 0;
         count.made_up += !touches && !r.contacts.empty() ? 1 : 0;
