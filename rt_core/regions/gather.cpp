@@ -47,7 +47,7 @@ bool sweep_if_lost(Work& work, std::uint32_t index) noexcept {
   const std::size_t regions = pair.image_a->regions.size();
   work.swept = true;
   work.room = Work::kLeastRoom;  // there is much to search, and how the bodies move is not known
-  memory.containment[index].doubtful = true;
+  memory.containment[index] = {};
   memory.pursuit.surveyed = 1;  // what a survey had left of another place is none of this one
   for (double& far_until : memory.scouted.subspan(memory.first_state[index], regions))
     far_until = 0;

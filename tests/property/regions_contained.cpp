@@ -81,6 +81,20 @@ TEST(RegionsContained, small_budget_does_not_rule_out_what_it_has_no_time_to_loo
   }
 }
 
+TEST(RegionsContained, what_was_asked_before_a_jump_does_not_tell_where_a_body_is_after_it) {
+  const BakedBody small(gear(12, 0.1, 0.05), kRegions);
+  const BakedBody large(gear(40, 1, 0.6), kRegions);
+  for (const std::uint64_t units : {16u, 64u, 256u}) {
+    for (int asked = 1; asked < 8; ++asked) {
+      BakedScene scene({small.view, large.view}, {{0, 1}}, settings());
+      const Pose inside[2] = {{{0.4, 0.03, 0}, {}}, {}};
+      const Pose outside[2] = {{{0.8, 0.03, 0}, {}}, {}};
+      for (int i = 0; i < asked; ++i) tick_or_fail(*scene.engine, inside, {.units = 16});
+      EXPECT_TRUE(tick_or_fail(*scene.engine, outside, {.units = units}).contacts.empty());
+    }
+  }
+}
+
 /// What moves by more than it is wide may be on either side, with no tick in which it crosses.
 TEST(RegionsContained, what_passes_through_a_surface_between_two_ticks_is_inside) {
   const BakedBody small(ball(8, 10, 0.01), kRegions);
