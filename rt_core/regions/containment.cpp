@@ -210,11 +210,11 @@ Side answer(Work& work, Containment& kept, const levels::PairState& pair) noexce
   }
 }
 
+/// Asks, or goes on with what has been asked, unless the bodies cross.
 void settle_side(Work& work, std::uint32_t index) noexcept {
   const levels::PairState& pair = work.memory.pairs[index];
   Containment& kept = work.memory.containment[index];
-  const bool doubtful = kept.doubtful || (kept.unseen && kept.inside);
-  if ((!doubtful && !kept.asked) || crosses(work, index)) return;
+  if (crosses(work, index)) return;
   if (!kept.asked) {
     ask(kept, pair, false);
     kept.doubtful = kept.unseen = false;
@@ -248,10 +248,9 @@ void look_for_way_out(Work& work, std::uint32_t pair) noexcept {
   }
 }
 
+/// What has been asked already goes on in the next tick.
 void settle_unseen(Work& work, std::uint32_t pair) noexcept {
-  Containment& kept = work.memory.containment[pair];
-  if (kept.asked) return;
-  kept.doubtful = true;
+  if (work.memory.containment[pair].asked) return;
   settle_side(work, pair);
   look_for_way_out(work, pair);
 }
@@ -301,7 +300,9 @@ void find_way_out(Work& work, std::uint32_t pair) noexcept {
 
 void settle_sides(Work& work) noexcept {
   for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
-    settle_side(work, i);
+    const Containment& kept = work.memory.containment[i];
+    const bool left_unseen = kept.inside && kept.unseen;
+    if (kept.doubtful || kept.asked || left_unseen) settle_side(work, i);
     look_for_way_out(work, i);
   }
 }

@@ -49,8 +49,9 @@ bool sweep_if_lost(Work& work, std::uint32_t index) noexcept {
   work.room = Work::kLeastRoom;  // there is much to search, and how the bodies move is not known
   memory.containment[index] = {};
   memory.pursuit.surveyed = 1;  // what a survey had left of another place is none of this one
-  for (double& far_until : memory.scouted.subspan(memory.first_state[index], regions))
+  for (double& far_until : memory.scouted.subspan(memory.first_state[index], regions)) {
     far_until = 0;
+  }
   // However small the budget is for the rest of the tick, it knows where the bodies touch.
   if (work.demand.limited) scout(work, index, kMostScouted);
   const std::span<float> swept = memory.swept.first(regions);

@@ -98,8 +98,7 @@ struct QueryResult {
   double s_worst = 0;             ///< largest radius of a region that is not resolved, relative
   std::uint64_t near_regions = 0;
   std::uint64_t queries = 0;  ///< work units
-  bool maybe_apart =
-      false;  ///< a contact tells the way out of a body that may have been left since
+  bool maybe_apart = false;   ///< some contact is a depth in a body that may have been left since
   bool truncated_by_time = false;
   bool truncated_by_units = false;
   bool truncated_by_memory = false;

@@ -13,7 +13,7 @@ namespace palpate::regions {
 /// fit each other, one look at each of sixteen regions does; and whether most of those are behind
 /// what is nearest to them makes it suspect that one body is inside the other (containment.hpp).
 /// Regions that have been looked at in vain are passed over in the ticks to come, until they may
-/// have come near: so the scouts of slow bodies get farther from tick to tick.
+/// have come near: so the scouts of bodies that slide get farther from tick to tick.
 ///
 /// Nothing is proved by that. It takes a third of what a search of both trees takes that ends with
 /// the first pair near enough (docs/TRIED.md, "Any contact first").
