@@ -253,7 +253,27 @@ class Builder {
       t.piece = image::kNone;
       t.source = order_[i];
     }
-    link_neighbours(place);
+    const std::vector<Side> sides = sorted_sides(mesh_.faces);
+    link_neighbours(place, sides);
+    link_components(components_of(mesh_.faces, sides));
+  }
+
+  /// Of several ones each triangle leads to its component's first, and that to the next one's.
+  void link_components(const Components& components) {
+    const std::size_t count = components.closed.size();
+    if (count < 2) return;
+    std::vector<std::uint32_t> first_of(count, image::kNone);
+    std::uint32_t last = image::kNone;  // of those first ones
+    for (std::uint32_t i = 0; i < order_.size(); ++i) {
+      std::uint32_t& first = first_of.at(components.of_face[order_[i]]);
+      if (first != image::kNone) {
+        out_.triangles[i].component = first;
+        continue;
+      }
+      out_.triangles[i].component = image::kNone;
+      if (last != image::kNone) out_.triangles[last].component = i;
+      first = last = i;
+    }
   }
 
   void find_runs() {
@@ -266,8 +286,7 @@ class Builder {
     }
   }
 
-  void link_neighbours(const std::vector<std::uint32_t>& place) {
-    const std::vector<Side> sides = sorted_sides(mesh_.faces);
+  void link_neighbours(const std::vector<std::uint32_t>& place, std::span<const Side> sides) {
     for_each_edge(sides, [&](std::span<const Side> edge) {
       if (edge.size() != 2) return;
       for (std::size_t k = 0; k < 2; ++k) {

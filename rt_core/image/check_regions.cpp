@@ -196,7 +196,7 @@ bool triangle_links_sound(const ImageView& image, const RegionNode& leaf,
   const RegionTriangle& t = image.region_triangles[index];
   return t.region == leaf.region && t.piece < image.pieces.size() &&
          image.pieces[t.piece].level == 0 && t.source < image.header->source_triangles &&
-         t.reserved == 0 && neighbours_sound(image, index);
+         neighbours_sound(image, index);
 }
 
 Status check_leaf(const ImageView& image, std::uint32_t index) noexcept {
@@ -212,6 +212,7 @@ Status check_leaf(const ImageView& image, std::uint32_t index) noexcept {
 }
 
 bool records_clear(const ImageView& image) noexcept {
+  if (image.header->format_minor > kFormatMinor) return true;
   std::uint32_t bits = 0;
   for (const RegionNode& node : image.region_nodes) {
     for (const std::uint32_t r : node.reserved) bits |= r;
@@ -229,6 +230,26 @@ bool ranks_sound(const ImageView& image) noexcept {
     if (region.rank >= ranks) return false;
   }
   return true;
+}
+
+// Whether each triangle leads to the first one of its component, and those from one to the next.
+bool components_sound(const ImageView& image) noexcept {
+  const auto triangles = image.region_triangles;
+  const bool told = image.header->format_minor >= kComponentsSince;
+  const std::uint32_t count = told ? image.header->source_components : 1;
+  std::uint32_t first = count > 1 ? 0 : kNone;  // of the next component
+  std::uint32_t seen = 0;
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const std::uint32_t named = triangles[i].component;
+    if (i == first) {
+      if (named <= i || (named >= triangles.size() && named != kNone)) return false;
+      first = named;
+      ++seen;
+    } else if (count > 1 ? named >= i || triangles[named].component <= named : named != 0) {
+      return false;
+    }
+  }
+  return count == 1 || seen == count;
 }
 
 bool lengths_sound(const ImageView& image) noexcept {
@@ -255,7 +276,7 @@ Status check_regions(const ImageView& image) noexcept {
   if (!runs_tile(image) || !parents_agree(image) || !regions_sound(image)) {
     return Status::image_bad_tree;
   }
-  if (!ranks_sound(image)) return Status::image_bad_index;
+  if (!ranks_sound(image) || !components_sound(image)) return Status::image_bad_index;
   if (!lengths_sound(image)) return Status::image_bad_float;
   for (const RegionNode& node : image.region_nodes) {
     if (!boxes_sound(node)) return Status::image_bad_float;

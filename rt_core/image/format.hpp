@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The memory image, format version 1.4: what lies where. docs/FORMAT.md specifies it for readers in
+// The memory image, format version 1.5: what lies where. docs/FORMAT.md specifies it for readers in
 // other languages; this header is its C++ form and the only place that knows the layout.
 //
 // Little-endian; fixed-width types; every section starts on a 64-byte boundary; offsets count bytes
@@ -20,11 +20,12 @@ namespace palpate::image {
 
 inline constexpr std::uint8_t kMagic[8] = {0x89, 'P', 'A', 'L', 'P', '\r', '\n', 0x1a};
 inline constexpr std::uint16_t kFormatMajor = 1;        ///< another major number is refused
-inline constexpr std::uint16_t kFormatMinor = 4;        ///< a newer minor number still loads
+inline constexpr std::uint16_t kFormatMinor = 5;        ///< a newer minor number still loads
 inline constexpr std::uint16_t kPatchNormalsSince = 1;  ///< minor version
 inline constexpr std::uint16_t kSourceDeviationSince = 2;
 inline constexpr std::uint16_t kProximitySince = 3;
 inline constexpr std::uint16_t kRanksSince = 4;
+inline constexpr std::uint16_t kComponentsSince = 5;
 inline constexpr std::uint32_t kByteOrderMark = 0x01020304;
 inline constexpr std::size_t kAlignment = 64;
 inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< "no such index"

@@ -44,7 +44,10 @@ struct RegionTriangle {
   std::uint32_t region;
   std::uint32_t piece;   ///< the piece of level 0 whose patch holds it
   std::uint32_t source;  ///< index in the source mesh; each once
-  std::uint32_t reserved;
+  /// The first triangle of the component of the surface that it is of, which comes before it. At
+  /// that one itself: the first one of the next component, which comes after it; kNone at the last.
+  /// 0 throughout where there is one component (component.hpp).
+  std::uint32_t component;
 };
 static_assert(sizeof(RegionTriangle) == 64);
 

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/regions/component.hpp"
 #include "rt_core/regions/look_into.hpp"
 #include "rt_core/regions/named_box.hpp"
 #include "rt_core/regions/work.hpp"
@@ -24,8 +25,6 @@ constexpr float kRoom = 1e-5f;
 constexpr Mat3d kRays[] = {{{0.8, -0.6, 0.0}, {0.36, 0.48, -0.8}, {0.48, 0.64, 0.6}},
                            {{0.28, 0.96, 0.0}, {-0.768, 0.224, -0.6}, {-0.576, 0.168, 0.8}},
                            {{-0.6, 0.0, 0.8}, {0.64, -0.6, 0.48}, {0.48, 0.8, 0.36}}};
-
-bool is_one(const ImageView& body) noexcept { return body.header->source_components == 1; }
 
 /// A box without width, from a point on.
 /// @param axes  rows: two directions across the way, and its own
@@ -173,41 +172,76 @@ bool crosses(const Work& work, std::uint32_t pair) noexcept {
   return false;
 }
 
+/// Whether some of a pair is felt; of the component that is inside the other body, where one is.
 bool is_near(const Work& work, std::uint32_t pair) noexcept {
+  const Containment& kept = work.memory.containment[pair];
   for (const Active& item : work.active()) {
-    if (item.pair == pair && work.is_felt(item)) return true;
+    if (item.pair != pair || !work.is_felt(item)) continue;
+    if (!kept.inside || is_contained(kept, work.frame_of(item), work.witness_of(item))) return true;
   }
   return false;
 }
 
-void ask(Containment& kept, const levels::PairState& pair, bool of_b) noexcept {
+const ImageView& body_of(const levels::PairState& pair, bool of_b) noexcept {
+  return of_b ? *pair.image_b : *pair.image_a;
+}
+
+void ask(Containment& kept, const levels::PairState& pair, Component component) noexcept {
   const Mat3d& r = pair.b_in_a.rotation;
   const Vec3d t = pair.b_in_a.translation;
-  const ImageView& asked_of = of_b ? *pair.image_b : *pair.image_a;
-  const Vec3d vertex =
-      (of_b ? pair.scale_b : pair.scale_a) * vec3d(asked_of.region_triangles[0].corners);
+  const bool of_b = component.of_b;
+  const float* corners = body_of(pair, of_b).region_triangles[component.first].corners;
+  const Vec3d vertex = (of_b ? pair.scale_b : pair.scale_a) * vec3d(corners);
   kept.asked = true;
-  kept.of_b = of_b;
+  kept.asking = component;
   kept.question = {.point = of_b ? (1.0 / pair.scale_a) * (r * vertex + t)
                                  : (1.0 / pair.scale_b) * (transpose(r) * (vertex - t)),
                    .walk = {}};
 }
 
-/// @return Side::unknown where the question is still open, or has no answer
-Side answer(Work& work, Containment& kept, const levels::PairState& pair) noexcept {
-  while (true) {
-    const ImageView& asked_of = kept.of_b ? *pair.image_b : *pair.image_a;
-    const ImageView& around = kept.of_b ? *pair.image_a : *pair.image_b;
-    const Side side = is_one(asked_of)
-                          ? side_of(*work.memory.kernels, around, kept.question, work.pace)
-                          : Side::outside;
-    if (side == Side::outside && !kept.of_b) {
-      ask(kept, pair, true);
-      continue;
-    }
-    kept.asked = side == Side::unknown && kept.question.ray < kRayCount;
-    return side;
+/// Of a's first component, or of b's.
+void ask_first(Containment& kept, const levels::PairState& pair, bool of_b) noexcept {
+  kept.asked = false;
+  for (; !kept.asked; of_b = true) {
+    if (tells_components(body_of(pair, of_b))) ask(kept, pair, {of_b, 0});
+    if (of_b) return;
   }
+}
+
+void ask_next(Containment& kept, const levels::PairState& pair, Pace& pace) noexcept {
+  const bool of_b = kept.asking.of_b;
+  const std::uint32_t next = next_component(body_of(pair, of_b), kept.asking.first);
+  if (next != image::kNone) {
+    pace.charge(1);
+    ask(kept, pair, {of_b, next});
+  } else if (!of_b) {
+    ask_first(kept, pair, true);
+  } else {
+    kept.asked = false;
+  }
+}
+
+/// Goes on with what is asked, until something is inside, nothing is left to be asked, or the pace
+/// ends it.
+/// @return Side::unknown where a question is still open, or has no answer
+Side answer(Work& work, Containment& kept, const levels::PairState& pair) noexcept {
+  while (kept.asked) {
+    const bool in_time = kept.asking.first == 0 || work.pace.go_on();
+    if (!in_time) return Side::unknown;
+    const ImageView& around = body_of(pair, !kept.asking.of_b);
+    const Side side = side_of(*work.memory.kernels, around, kept.question, work.pace);
+    if (side == Side::inside) {
+      kept.asked = false;
+      kept.contained = kept.asking;
+      return side;
+    }
+    if (side == Side::unknown) {
+      if (kept.question.ray < kRayCount) return side;
+      kept.unanswered = true;
+    }
+    ask_next(kept, pair, work.pace);
+  }
+  return kept.unanswered ? Side::unknown : Side::outside;
 }
 
 /// Asks, or goes on with what has been asked, unless the bodies cross.
@@ -216,8 +250,8 @@ void settle_side(Work& work, std::uint32_t index) noexcept {
   Containment& kept = work.memory.containment[index];
   if (crosses(work, index)) return;
   if (!kept.asked) {
-    ask(kept, pair, false);
-    kept.doubtful = kept.unseen = false;
+    ask_first(kept, pair, false);
+    kept.doubtful = kept.unseen = kept.unanswered = false;
   }
   if (work.demand.limited && !work.swept) work.limit_to(kMostAsked);
   const Side side = answer(work, kept, pair);
@@ -226,6 +260,40 @@ void settle_side(Work& work, std::uint32_t index) noexcept {
   kept.inside = side == Side::inside;
   kept.doubtful |= side == Side::unknown;
   kept.nearest = {};
+}
+
+/// Looks from the component that is inside, where it is one of several: from its first triangles.
+void look_from_component(const ImageView& body, std::uint32_t first, Looks& looks) noexcept {
+  constexpr std::uint32_t kMostPassed = 64;  // of others that lie between them
+  const auto triangles = static_cast<std::uint32_t>(body.region_triangles.size());
+  const std::uint32_t left = triangles - first;
+  const std::uint32_t end = first + (left < kMostPassed ? left : kMostPassed);
+  looks.count = 0;
+  for (std::uint32_t i = first; i < end && looks.count < kMostLooks; ++i) {
+    if (first_of_component(body, i) != first) continue;
+    looks.number[looks.count] = looks.count;
+    looks.pairs[looks.count++] = {i, 0, 0};
+  }
+}
+
+/// b from a's side.
+PairFrame turned(const PairFrame& frame) noexcept {
+  return {frame.b, frame.a, frame.b_to_a, frame.a_to_b, frame.scale2_b, frame.scale2_a};
+}
+
+/// About the nearest pair of sixteen looks.
+Witness look_out(Work& work, const Containment& kept, const PairFrame& frame) noexcept {
+  const auto [of_b, first] = kept.contained;
+  const ImageView& body = of_b ? *frame.b : *frame.a;
+  Looks looks;
+  if (next_component(body, 0) == image::kNone) {
+    look_everywhere(frame, looks);
+    return nearest_of(work, frame, looks);
+  }
+  look_from_component(body, first, looks);
+  if (!of_b) return nearest_of(work, frame, looks);
+  const Witness found = nearest_of(work, turned(frame), looks);
+  return {found.b, found.a, found.distance};
 }
 
 /// A pair that leads out, measured at the present poses: that of the tick before, else about the
@@ -241,10 +309,9 @@ void look_for_way_out(Work& work, std::uint32_t pair) noexcept {
     float distances[kBatch];
     measure(*work.memory.kernels, frame, scratch, work.pace, 1, distances);
     kept.nearest.distance = distances[0];
-  } else if (can_look(frame) && work.units_left() >= static_cast<double>(kUnitsOfLooks)) {
-    Looks looks;
-    look_everywhere(frame, looks);
-    kept.nearest = nearest_of(work, pair, looks);
+  } else if (can_look(frame) && can_look(turned(frame)) &&
+             work.units_left() >= static_cast<double>(kUnitsOfLooks)) {
+    kept.nearest = look_out(work, kept, frame);
   }
 }
 
@@ -255,30 +322,38 @@ void settle_unseen(Work& work, std::uint32_t pair) noexcept {
   look_for_way_out(work, pair);
 }
 
-/// Makes a witness known to the report.
+/// Makes a witness known to the report, unless what its region feels of another component is
+/// nearer.
 void activate(Work& work, std::uint32_t pair, const Witness& witness) noexcept {
   QueryMemory& memory = work.memory;
   const std::uint32_t region = memory.frames[pair].a->region_triangles[witness.a].region;
   const std::uint32_t state = memory.first_state[pair] + region;
+  bool is_active = false;
+  for (const Active& item : work.active()) {
+    if (item.state != state) continue;
+    if (work.is_felt(item)) return;
+    is_active = true;
+  }
   memory.witnesses[state] = witness;
   memory.crowd.absence[state] = 0;
-  for (const Active& item : work.active()) {
-    if (item.state == state) return;
-  }
+  if (is_active) return;
   const auto rest = static_cast<float>(memory.pairs[pair].delta);
   memory.active[work.count++] = {
       .rest = rest, .way = {}, .state = state, .region = region, .pair = pair};
 }
 
-/// The nearest of all pairs of triangles, or of those that the budget does for.
+/// The nearest of all pairs of triangles, or of those that the budget does for. Of regions that are
+/// nearest with another component than the one inside, none.
 /// @param best  of the present poses
 Witness nearest_of_all(Work& work, std::uint32_t pair, Witness best) noexcept {
+  const Containment& kept = work.memory.containment[pair];
   const PairFrame& frame = work.memory.frames[pair];
   for (std::uint32_t i = 0; i < frame.a->regions.size() && work.pace.go_on(); ++i) {
     const Reach reach{best.known() ? best.distance : kFarthest, 0};
     const Bounds found =
         search(*work.memory.kernels, frame, *work.memory.search, work.pace, i, {}, reach);
-    if (found.best.known() && found.best.distance < reach.limit) best = found.best;
+    const bool nearer = found.best.known() && found.best.distance < reach.limit;
+    if (nearer && is_contained(kept, frame, found.best)) best = found.best;
   }
   return best;
 }
@@ -297,6 +372,12 @@ void find_way_out(Work& work, std::uint32_t pair) noexcept {
 }
 
 }  // namespace
+
+bool is_contained(const Containment& kept, const PairFrame& frame, const Witness& pair) noexcept {
+  const bool of_b = kept.contained.of_b;
+  const ImageView& body = of_b ? *frame.b : *frame.a;
+  return kept.inside && first_of_component(body, of_b ? pair.b : pair.a) == kept.contained.first;
+}
 
 void settle_sides(Work& work) noexcept {
   for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {

@@ -31,16 +31,24 @@ struct SideQuestion {
   Walk walk;
 };
 
+/// A component of one of a pair's bodies.
+struct Component {
+  bool of_b = false;
+  std::uint32_t first = 0;  ///< triangle of it (component.hpp)
+};
+
 /// What is kept of a pair from tick to tick.
 struct Containment {
-  bool inside = false;     ///< one body is inside the other
-  bool doubtful = true;    ///< a jump, or surfaces that may have passed through each other since
-  bool unseen = false;     ///< that they have is not ruled out: asked when nothing is felt
-  bool suspected = false;  ///< it looks as if one were inside the other (scout.hpp)
-  bool asked = false;      ///< `question` is open, of the bodies as they were when it was asked
-  bool of_b = false;       ///< whether b's first vertex is inside a; else a's inside b
-  SideQuestion question;   ///< until surfaces cross again its answer holds
-  Witness nearest;         ///< inside, and farther than delta from the surface: the nearest pair
+  bool inside = false;      ///< a component of one body is inside the other
+  bool doubtful = true;     ///< a jump, or surfaces that may have passed through each other since
+  bool unseen = false;      ///< that they have is not ruled out: asked when nothing is felt
+  bool suspected = false;   ///< it looks as if one were inside the other (scout.hpp)
+  bool asked = false;       ///< `question` is open, of the bodies as they were when it was asked
+  bool unanswered = false;  ///< of a component asked before, no ray has told
+  Component asking;         ///< whether its first vertex is inside the other body
+  Component contained;      ///< inside
+  SideQuestion question;    ///< until surfaces cross again its answer holds
+  Witness nearest;          ///< of `contained`, if farther than delta from the surface: the nearest
 
   /// `inside` is as it was, and may be so no more.
   [[nodiscard]] bool is_open() const noexcept { return doubtful || unseen || asked; }
@@ -64,13 +72,19 @@ struct Containment {
 [[nodiscard]] bool in_sight(const Kernels& kernels, const ImageView& body, Vec3d from, Vec3d to,
                             Pace& pace) noexcept;
 
+/// Whether a pair of triangles is of the component that is inside the other body.
+[[nodiscard]] bool is_contained(const Containment& kept, const PairFrame& frame,
+                                const Witness& pair) noexcept;
+
 /// Settles for every pair whether one body is inside the other, where that is in doubt: where a
-/// vertex of one is inside the other, the whole body is, unless they cross. Surfaces that cross
-/// have no inside to speak of, and are looked at once they have parted. A body of several
-/// components is not asked for: its vertex would not speak for all of it. Of what is inside and
-/// near no surface some pair is measured, about the nearest. Cost: side_of(), twice, for each pair
-/// in doubt; but at most half of what a budget has left unless the bodies have jumped, the rest in
-/// the ticks to come. Then kUnitsOfLooks.
+/// vertex of one is inside the other, the whole component is, unless they cross. Surfaces that
+/// cross have no inside to speak of, and are looked at once they have parted. Components are asked
+/// for one after another, a's before b's, until one is inside: others that are, too, are not felt
+/// before they come near a surface. Images from before 1.5 do not tell several ones apart, and are
+/// not asked for. Of what is inside and near no surface some pair is measured, about the nearest.
+/// Cost: side_of(), and a unit, for each component of each pair in doubt; but at most half of what
+/// a budget has left unless the bodies have jumped, the rest in the ticks to come. Then
+/// kUnitsOfLooks.
 void settle_sides(Work& work) noexcept;
 
 /// The same where nothing is felt and one body seems to be inside the other, as a body is that has

@@ -36,10 +36,9 @@ void look_into(Work& work, std::uint32_t index, std::uint32_t count, auto& batch
 /// Looks and the pairs that they find measured, at most.
 inline constexpr std::uint64_t kUnitsOfLooks = kMostLooks / kLooksPerUnit + kBatchUnits;
 
-/// Of what a pair's looks find. Cost: kUnitsOfLooks.
+/// Of what looks find. Cost: kUnitsOfLooks.
 /// @param looks  before any step; at least one
-inline Witness nearest_of(Work& work, std::uint32_t pair, Looks& looks) noexcept {
-  const PairFrame& frame = work.memory.frames[pair];
+inline Witness nearest_of(Work& work, const PairFrame& frame, Looks& looks) noexcept {
   SearchScratch& scratch = *work.memory.search;
   look_from(frame, looks);
   work.pace.charge(looks.count / kLooksPerUnit);

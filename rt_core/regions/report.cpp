@@ -97,9 +97,10 @@ class Report {
     const Vec3d normal =
         distance > kTouching ? (1 / distance) * apart : facing_at(pair, witness.b, on_a);
     const Containment& kept = memory_.containment[item.pair];
+    const bool contained = is_contained(kept, work_.frame_of(item), witness);
     const bool flip =
-        distance > kTouching && (kept.inside || is_behind(item, on_a, on_a - apart, normal));
-    if (flip && kept.inside && kept.is_open()) leave_open(pair, distance);
+        distance > kTouching && (contained || is_behind(item, on_a, on_a - apart, normal));
+    if (flip && contained && kept.is_open()) leave_open(pair, distance);
     const Felt felt = flip ? Felt{-normal, 1} : at_border(item, on_a, on_a - apart, normal);
     add(item, {on_a, on_a - apart, felt.normal, flip ? -distance : distance,
                pair.image_a->region_triangles[witness.a].piece,

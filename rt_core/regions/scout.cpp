@@ -76,7 +76,7 @@ class Scout {
   Witness look_everywhere() noexcept {
     Looks looks;
     regions::look_everywhere(frame_, looks);
-    const Witness nearest = nearest_of(work_, pair_, looks);
+    const Witness nearest = nearest_of(work_, frame_, looks);
     std::uint32_t behind = 0;
     for (std::uint32_t i = 0; i < looks.count; ++i) behind += is_behind(looks.pairs[i]) ? 1u : 0u;
     work_.memory.containment[pair_].suspected = 2 * behind > looks.count;
@@ -100,7 +100,7 @@ class Scout {
     if (way_ < far_until) return;
     Looks looks;
     look_over(frame_, region, 0, kMostLooks, looks);
-    const Witness nearest = nearest_of(work_, pair_, looks);
+    const Witness nearest = nearest_of(work_, frame_, looks);
     if (nearest.nearer_than(limit_)) {
       found = nearest;
       return;

@@ -15,6 +15,7 @@
 #include "tests/support/effort.hpp"
 #include "tests/support/placements.hpp"
 #include "tests/support/shapes.hpp"
+#include "tests/unit/mesh_support.hpp"
 
 namespace palpate::test {
 namespace {
@@ -27,8 +28,11 @@ Settings settings() {
       .engine = EngineKind::regions, .delta_m = kDelta, .exact = true, .cluster_radius_m = kDelta};
 }
 
-bake::Mesh inside_out(bake::Mesh mesh) {
-  for (bake::Face& f : mesh.faces) std::swap(f[1], f[2]);
+using bake::testing::inside_out;
+using bake::testing::together;
+
+bake::Mesh shifted(bake::Mesh mesh, Vec3d by) {
+  for (bake::Point& p : mesh.points) p = {p[0] + by.x, p[1] + by.y, p[2] + by.z};
   return mesh;
 }
 
@@ -114,18 +118,11 @@ TEST(RegionsContained, what_passes_through_a_surface_between_two_ticks_is_inside
 
 /// Ways through each other, with steps from a tenth of delta to what counts as a jump, against
 /// exact answers that know nothing of the tick before.
-TEST(RegionsContained, no_way_in_is_denied_and_no_way_out) {
+void expect_no_way_is_denied(const std::vector<BakedBody>& small,
+                             const std::vector<BakedBody>& large, int ways) {
   constexpr double kThin = 0.004;
   Settings thin = settings();
   thin.delta_m = kThin;
-  std::vector<BakedBody> large;
-  large.emplace_back(bumpy_ball(24, 30, 1), kRegions);
-  large.emplace_back(gear(12, 1, 0.4), kRegions);
-  large.emplace_back(bake::make_model("golf_shell", 4'000), kRegions);
-  std::vector<BakedBody> small;
-  small.emplace_back(ball(6, 8, 0.01), kRegions);
-  small.emplace_back(gear(6, 0.04, 0.02), kRegions);
-  small.emplace_back(bumpy_ball(10, 12, 0.2), kRegions);
   struct Count {
     std::uint64_t units;
     int denied = 0, missed = 0, made_up = 0;
@@ -169,18 +166,43 @@ TEST(RegionsContained, no_way_in_is_denied_and_no_way_out) {
       pose.orientation = turned * pose.orientation;
     }
   };
-  constexpr int kWays = effort(90, 18);
-  for (int way = 0; way < kWays; ++way) tick_of(way);
-  EXPECT_GT(contained, 10 * kWays);
+  for (int way = 0; way < ways; ++way) tick_of(way);
+  testing::Test::RecordProperty("contained", contained);
+  EXPECT_GT(contained, 10 * ways);
   for (const Count& c : counts) {
-    RecordProperty("missed_" + std::to_string(c.units), c.missed);
-    RecordProperty("made_up_" + std::to_string(c.units), c.made_up);
+    testing::Test::RecordProperty("missed_" + std::to_string(c.units), c.missed);
+    testing::Test::RecordProperty("made_up_" + std::to_string(c.units), c.made_up);
     EXPECT_EQ(c.denied, 0) << c.units;
     if (c.units >= 2000) {
       EXPECT_EQ(c.missed, 0) << c.units;
       EXPECT_EQ(c.made_up, 0) << c.units;
     }
   }
+}
+
+TEST(RegionsContained, no_way_in_is_denied_and_no_way_out) {
+  std::vector<BakedBody> large;
+  large.emplace_back(bumpy_ball(24, 30, 1), kRegions);
+  large.emplace_back(gear(12, 1, 0.4), kRegions);
+  large.emplace_back(bake::make_model("golf_shell", 4'000), kRegions);
+  std::vector<BakedBody> small;
+  small.emplace_back(ball(6, 8, 0.01), kRegions);
+  small.emplace_back(gear(6, 0.04, 0.02), kRegions);
+  small.emplace_back(bumpy_ball(10, 12, 0.2), kRegions);
+  expect_no_way_is_denied(small, large, effort(90, 9));
+}
+
+TEST(RegionsContained, no_way_of_one_component_among_several_is_denied) {
+  std::vector<BakedBody> large;
+  large.emplace_back(together(bumpy_ball(24, 30, 1), inside_out(ball(12, 16, 0.6))), kRegions);
+  large.emplace_back(together(gear(12, 0.5, 0.4), shifted(box(0.5, 0.4, 0.4), {0, 1.2, 0})),
+                     kRegions);
+  std::vector<BakedBody> small;
+  small.emplace_back(together(ball(6, 8, 0.01), shifted(ball(6, 8, 0.012), {0, 0, 0.4})), kRegions);
+  small.emplace_back(ball(6, 8, 0.02), kRegions);
+  small.emplace_back(together(gear(6, 0.04, 0.02), shifted(ball(4, 6, 0.02), {0.1, 0.02, 0})),
+                     kRegions);
+  expect_no_way_is_denied(small, large, effort(60, 6));
 }
 
 TEST(RegionsContained, large_body_around_a_small_one_is_pushed_off_it) {
@@ -223,18 +245,62 @@ TEST(RegionsContained, rooms_and_open_surfaces_have_no_inside) {
 
 TEST(RegionsContained, wall_of_a_shell_is_inside_and_its_cavity_is_not) {
   const BakedBody small(ball(6, 8, 0.04), kRegions);
-  bake::Mesh shell = ball(12, 16, 1);
-  const bake::Mesh cavity = inside_out(ball(12, 16, 0.7));
-  const auto first = static_cast<std::uint32_t>(shell.points.size());
-  shell.points.insert(shell.points.end(), cavity.points.begin(), cavity.points.end());
-  for (const bake::Face& f : cavity.faces) {
-    shell.faces.push_back({f[0] + first, f[1] + first, f[2] + first});
-  }
-  const BakedBody around(std::move(shell), kRegions);
+  const BakedBody around(together(ball(12, 16, 1), inside_out(ball(12, 16, 0.7))), kRegions);
   BakedScene scene({small.view, around.view}, {{0, 1}}, settings());
   EXPECT_TRUE(tick_at(scene, {0.02, 0.03, 0.01}).contacts.empty());
   expect_pushed_out(tick_at(scene, {0.9, 0.01, 0.02}), {1, 0, 0});
   expect_pushed_out(tick_at(scene, {0.78, 0.01, 0.02}), {-1, 0, 0});
+}
+
+/// Two balls and a bar beside them, in one body: whichever of them is inside the box.
+TEST(RegionsContained, component_of_a_body_is_pushed_out_by_itself) {
+  const Vec3d at[] = {{0, 0, 0}, {3, 0, 0}, {-3, 0, 0.02}};
+  const bake::Mesh balls =
+      together(shifted(ball(8, 10, 0.1), at[0]), shifted(ball(6, 8, 0.12), at[1]));
+  const BakedBody parts(together(balls, shifted(box(0.1, 0.4, 0.1), at[2])), kRegions);
+  const BakedBody large(box(1, 1, 1), kRegions);
+  ASSERT_EQ(parts.view.header->source_components, 3u);
+  for (const std::uint64_t units : {Budget{}.units, std::uint64_t{1000}}) {
+    for (const Vec3d inside : at) {
+      for (const bool parts_move : {true, false}) {
+        SCOPED_TRACE(std::to_string(units) + " units, " + std::to_string(inside.x) +
+                     (parts_move ? ", moving" : ", still"));
+        const ImageView views[] = {parts.view, large.view};
+        BakedScene scene({views[parts_move ? 0 : 1], views[parts_move ? 1 : 0]}, {{0, 1}},
+                         settings());
+        const auto tick = [&](Vec3d component_at) {
+          const Vec3d aside = component_at - inside;
+          const Pose poses[2] = {{parts_move ? aside : -aside, {}}, {}};
+          return tick_or_fail(*scene.engine, poses, {.units = units});
+        };
+        TickResult r = tick({0.02, 0.03, 0.7});
+        for (int i = 0; i < 3; ++i) r = tick({0.02, 0.03, 0.7});
+        expect_pushed_out(r, {0, 0, parts_move ? 1.0 : -1.0});
+        EXPECT_NEAR(r.min_distance_m, -0.2, 0.03);
+        EXPECT_TRUE(tick({0.02, 0.03, 1.5}).contacts.empty());
+      }
+    }
+  }
+}
+
+TEST(RegionsContained, component_beside_the_one_inside_stays_outside) {
+  const bake::Mesh inner = shifted(ball(8, 10, 0.1), {0, 0, -0.9});
+  for (const bool inner_first : {true, false}) {
+    const bake::Mesh outer = ball(8, 10, 0.1);
+    const BakedBody parts(inner_first ? together(inner, outer) : together(outer, inner), kRegions);
+    const BakedBody large(box(1, 1, 1), kRegions);
+    BakedScene scene({parts.view, large.view}, {{0, 1}}, settings());
+    const TickResult r = tick_at(scene, {0.02, 0.03, 1.1 + 0.5 * kDelta});
+    int outside = 0;
+    int inside = 0;
+    for (const Contact& c : r.contacts) {
+      outside += c.distance_m > 0 && c.centre_m.z > 1 ? 1 : 0;
+      inside += c.distance_m < -kDelta && c.centre_m.z < 1 ? 1 : 0;
+    }
+    EXPECT_GT(outside, 0);
+    EXPECT_EQ(inside, 1);
+    EXPECT_EQ(static_cast<std::size_t>(outside + inside), r.contacts.size());
+  }
 }
 
 TEST(RegionsContained, side_of_a_point_is_that_of_the_shape) {

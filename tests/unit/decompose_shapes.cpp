@@ -174,15 +174,6 @@ Mesh block(int n, const std::function<double(double, double)>& height) {
   return mesh;
 }
 
-Mesh together(const Mesh& a, const Mesh& b) {
-  Mesh mesh = a;
-  const auto offset = static_cast<std::uint32_t>(a.points.size());
-  mesh.points.insert(mesh.points.end(), b.points.begin(), b.points.end());
-  for (const bake::Face& f : b.faces)
-    mesh.faces.push_back({f[0] + offset, f[1] + offset, f[2] + offset});
-  return mesh;
-}
-
 bake::NormalMesh as_is(const Mesh& mesh) {
   bake::NormalMesh normal;
   normal.faces = mesh.faces;

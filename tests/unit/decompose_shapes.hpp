@@ -10,6 +10,7 @@
 
 #include "host_bake/mesh/check.hpp"
 #include "host_bake/mesh/mesh.hpp"
+#include "mesh_support.hpp"
 
 namespace palpate::test {
 
@@ -38,8 +39,7 @@ bake::Mesh voxels(const std::vector<std::array<int, 3>>& cells);
 /// = -1.
 bake::Mesh block(int n, const std::function<double(double, double)>& height);
 
-/// All faces of both; vertices are not shared.
-bake::Mesh together(const bake::Mesh& a, const bake::Mesh& b);
+using bake::testing::together;
 
 /// Cast to float, not moved or scaled.
 bake::NormalMesh as_is(const bake::Mesh& mesh);

@@ -133,6 +133,26 @@ TEST(FormatPage, Section_and_its_slots_are_those_of_the_header) {
   EXPECT_EQ(found, strides);
 }
 
+TEST(FormatPage, Regions_are_the_structs) {
+  using N = image::RegionNode;
+  const std::vector<Field> node = {
+      PALPATE_FIELD(N, centre),  PALPATE_FIELD(N, axes),     PALPATE_FIELD(N, half),
+      PALPATE_FIELD(N, first),   PALPATE_FIELD(N, children), PALPATE_FIELD(N, leaf),
+      PALPATE_FIELD(N, parent),  PALPATE_FIELD(N, region),   PALPATE_FIELD(N, first_region),
+      PALPATE_FIELD(N, regions), PALPATE_FIELD(N, reserved)};
+  EXPECT_EQ(fields_of("### RegionNode"), node);
+  using T = image::RegionTriangle;
+  const std::vector<Field> triangle = {PALPATE_FIELD(T, corners), PALPATE_FIELD(T, neighbours),
+                                       PALPATE_FIELD(T, region),  PALPATE_FIELD(T, piece),
+                                       PALPATE_FIELD(T, source),  PALPATE_FIELD(T, component)};
+  EXPECT_EQ(fields_of("### RegionTriangle"), triangle);
+  using R = image::Region;
+  const std::vector<Field> region = {PALPATE_FIELD(R, parent), PALPATE_FIELD(R, slot),
+                                     PALPATE_FIELD(R, reach),  PALPATE_FIELD(R, radius),
+                                     PALPATE_FIELD(R, rank),   PALPATE_FIELD(R, reserved)};
+  EXPECT_EQ(fields_of("### Region"), region);
+}
+
 TEST(FormatPage, Proximity_grid_and_runs_are_the_structs) {
   using G = image::ProximityGrid;
   const std::vector<Field> grid = {PALPATE_FIELD(G, origin), PALPATE_FIELD(G, cell),

@@ -11,9 +11,11 @@
 #include "host_bake/mesh/mesh.hpp"
 #include "host_bake/regions/even_order.hpp"
 #include "host_bake/regions/region_tree.hpp"
+#include "rt_core/regions/component.hpp"
 #include "rt_core/regions/region_triangle.hpp"
 #include "tests/support/baked_scene.hpp"
 #include "tests/support/shapes.hpp"
+#include "tests/unit/mesh_support.hpp"
 
 namespace palpate::test {
 namespace {
@@ -28,8 +30,8 @@ const BakedBody& bumpy() {
 /// A copy of a good image that can be damaged and signed again.
 class Damaged {
  public:
-  Damaged() : bytes_(bumpy().bytes->size) {
-    std::memcpy(bytes_.data.get(), bumpy().bytes->data.get(), bytes_.size);
+  explicit Damaged(const BakedBody& body = bumpy()) : bytes_(body.bytes->size) {
+    std::memcpy(bytes_.data.get(), body.bytes->data.get(), bytes_.size);
   }
   template <class T>
   T* section(SectionId id) {
@@ -133,6 +135,81 @@ TEST(RegionImage, Damage_of_every_kind_is_refused_by_name) {
     damage.done(image);
     EXPECT_EQ(image.check(view), damage.refused_as) << damage.what;
   }
+}
+
+/// Three balls: the first triangles of their components lead from one to the next.
+const BakedBody& apart() {
+  static const BakedBody body = [] {
+    bake::Mesh mesh;
+    for (const double x : {0.0, 3.0, 6.0}) {
+      bake::Mesh one = ball(4, 6, 1);
+      for (bake::Point& p : one.points) p[0] += x;
+      mesh = bake::testing::together(mesh, one);
+    }
+    return BakedBody(std::move(mesh), bake::ForEngine::regions);
+  }();
+  return body;
+}
+
+TEST(RegionImage, Components_are_told_apart) {
+  const ImageView& view = apart().view;
+  const auto triangles = static_cast<std::uint32_t>(view.region_triangles.size());
+  const std::uint32_t each = triangles / 3;
+  std::uint32_t components = 0;
+  std::uint32_t members = 0;
+  ASSERT_TRUE(regions::tells_components(view));
+  for (std::uint32_t first = 0; first != image::kNone;
+       first = regions::next_component(view, first)) {
+    const std::uint32_t of_source = view.region_triangles[first].source / each;
+    for (std::uint32_t i = 0; i < triangles; ++i) {
+      const bool of_it = view.region_triangles[i].source / each == of_source;
+      ASSERT_EQ(regions::first_of_component(view, i) == first, of_it);
+      members += of_it ? 1 : 0;
+    }
+    ++components;
+  }
+  EXPECT_EQ(components, 3u);
+  EXPECT_EQ(members, triangles);
+  EXPECT_TRUE(regions::tells_components(bumpy().view));
+  EXPECT_EQ(regions::next_component(bumpy().view, 0), image::kNone);
+  EXPECT_EQ(regions::first_of_component(bumpy().view, 5), 0u);
+}
+
+TEST(RegionImage, Components_that_lead_nowhere_are_refused) {
+  const ImageView& view = apart().view;
+  const std::uint32_t second = regions::next_component(view, 0);
+  const std::uint32_t third = regions::next_component(view, second);
+  const auto triangles = static_cast<std::uint32_t>(view.region_triangles.size());
+  const auto lead = [&](std::uint32_t from, std::uint32_t to) {
+    Damaged image(apart());
+    image.triangles()[from].component = to;
+    ImageView out;
+    return image.check(out);
+  };
+  ASSERT_EQ(lead(0, second), Status::ok);
+  EXPECT_EQ(lead(1, second), Status::image_bad_index) << "forward, from a triangle inside";
+  EXPECT_EQ(lead(0, 0), Status::image_bad_index) << "round";
+  EXPECT_EQ(lead(0, third), Status::image_bad_index) << "past one";
+  EXPECT_EQ(lead(0, image::kNone), Status::image_bad_index) << "to the end";
+  EXPECT_EQ(lead(0, triangles), Status::image_bad_index) << "out of the image";
+  EXPECT_EQ(lead(third, second), Status::image_bad_index) << "back";
+  EXPECT_EQ(lead(triangles - 1, 1), Status::image_bad_index) << "to a triangle that leads on";
+  Damaged one;
+  one.triangles()[3].component = 2;
+  ImageView out;
+  EXPECT_EQ(one.check(out), Status::image_bad_index) << "of a single component";
+}
+
+TEST(RegionImage, Components_of_an_older_image_are_not_told_apart) {
+  Damaged image(apart());
+  ImageView view;
+  image.header().format_minor = image::kComponentsSince - 1;
+  EXPECT_EQ(image.check(view), Status::image_bad_index);
+  for (std::uint32_t i = 0; i < image.header().source_triangles; ++i) {
+    image.triangles()[i].component = 0;
+  }
+  ASSERT_EQ(image.check(view), Status::ok);
+  EXPECT_FALSE(regions::tells_components(view));
 }
 
 TEST(RegionImage, Random_damage_is_refused_or_harmless) {
