@@ -33,6 +33,8 @@ target_compile_options(palpate_flags INTERFACE
   -Wundef -Wformat=2 -Wvla -Wmissing-declarations $<$<NOT:$<CONFIG:Release>>:-Werror>)
 if(NOT PALPATE_UNITY)  # which of a file's names hide which is told file by file
   target_compile_options(palpate_flags INTERFACE -Wshadow)
+elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(palpate_flags INTERFACE -Wshadow=local)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 sees these in std::string and in CGAL's inlined code, where there is none.
@@ -45,8 +47,9 @@ if(PALPATE_SANITIZE)
   if(PALPATE_SANITIZE STREQUAL "thread")
     # GCC and Clang have no common name for it.
     target_compile_definitions(palpate_flags INTERFACE PALPATE_THREAD_SANITIZER)
-  elseif(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-    target_compile_options(palpate_flags INTERFACE "-fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/tests/asan/ignored")
+  endif()
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    target_compile_options(palpate_flags INTERFACE "-fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/tests/sanitizers/ignored")
   endif()
 endif()
 if(PALPATE_COVERAGE)

@@ -8,6 +8,7 @@
 
 #include "host_bake/models/models.hpp"
 #include "tests/support/baked_scene.hpp"
+#include "tests/support/effort.hpp"
 
 namespace palpate::test {
 namespace {
@@ -122,7 +123,7 @@ TEST_P(Overlap, is_felt_alike_by_both_engines) {
   EXPECT_LT(felt.step_N[1], press.most_step_N[1]);
 }
 
-INSTANTIATE_TEST_SUITE_P(Presses, Overlap, testing::ValuesIn(kPresses),
+INSTANTIATE_TEST_SUITE_P(Presses, Overlap, testing::ValuesIn(kPresses, kPresses + effort(3, 1)),
                          [](const auto& tested) { return std::string(tested.param.tool); });
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/brute_force.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/support/placements.hpp"
 #include "tests/support/two_balls.hpp"
 
@@ -31,7 +32,7 @@ class ContactStatusOf : public testing::TestWithParam<EngineKind> {
 };
 
 constexpr std::uint64_t kEnough = 1u << 20;
-constexpr int kPlaces = 8;
+constexpr int kPlaces = effort(8, 2);
 
 TEST_P(ContactStatusOf, rules_out_what_is_not_there_where_the_budget_does) {
   for (int i = 0; i < kPlaces; ++i) {

@@ -66,7 +66,7 @@ std::vector<Pose> rolled(const BakedBody& ellipsoid, const BakedBody& ball, doub
   constexpr double kApart_m = 0.0414;
   BakedScene wide({ellipsoid.view, ball.view}, {{0, 1}}, {.delta_m = 0.006, .exact = true});
   std::vector<Pose> path;
-  for (int i = 0; i < effort(400, 100); ++i) {
+  for (int i = 0; i < effort(400, 40); ++i) {
     const double u = 0.0035 * i;
     const double level = std::cos(0.3 * u);
     const Vec3d out{std::cos(u) * level, std::sin(u) * level, std::sin(0.3 * u)};

@@ -206,7 +206,7 @@ Pose touching_ball(double radius_m, double angle) {
 /// where it touches is followed over the surface, from region to region.
 TEST(RegionsBudget, fast_bodies_do_not_lose_touch) {
   constexpr double kDeltaRel = 0.02;
-  constexpr int kSlide = effort(300, 100);
+  constexpr int kSlide = effort(300, 60);
   const Models balls("golf_ball", "golf_ball", 20'000, kDeltaRel);
   const double radius_m = balls.a.view.header->radius_m;
   BakedScene exact = balls.scene();
@@ -233,7 +233,7 @@ TEST(RegionsBudget, fast_bodies_do_not_lose_touch) {
 /// What is done however late a tick is goes to where the ball touches.
 TEST(RegionsBudget, fast_bodies_do_not_lose_touch_in_ticks_that_are_late_when_they_begin) {
   constexpr double kDeltaRel = 0.01;
-  constexpr int kSlide = effort(300, 100);
+  constexpr int kSlide = effort(300, 60);
   const Models balls("golf_ball", "golf_ball", 20'000, kDeltaRel);
   const double radius_m = balls.a.view.header->radius_m;
   BakedScene exact = balls.scene();
@@ -261,7 +261,7 @@ TEST(RegionsBudget, fast_bodies_do_not_lose_touch_in_ticks_that_are_late_when_th
 TEST(RegionsBudget, however_little_there_is_after_a_jump_some_contact_is_known) {
   const Models balls("golf_ball", "golf_ball", 20'000, 0.01);
   const double radius_m = balls.a.view.header->radius_m;
-  constexpr int kJumps = effort(100, 20);
+  constexpr int kJumps = effort(100, 10);
   int touching = 0, lost = 0;
   for (int i = 0; i < kJumps; ++i) {
     const Pose poses[2] = {{{1.99 * radius_m, 0, 0}, turn({0.4 * i, 0.7 * i, 0.1 * i})}, {}};
@@ -358,7 +358,7 @@ TEST(RegionsBudget, fast_passes_find_where_they_meet) {
   BakedScene exact = jaws.scene();
   BakedScene budgeted = jaws.scene();
   constexpr double kFeltWell = 0.8;  // of delta; farther contacts push little
-  constexpr int kPasses = effort(400, 100);
+  constexpr int kPasses = effort(400, 60);
   int touching = 0, lost = 0;
   for (int i = 0; i < kPasses; ++i) {
     Pose poses[2] = {ground(0.1, 10 * i), {}};
@@ -606,7 +606,7 @@ TEST(RegionsAllocationTrap, mixed_ticks_call_no_allocator_and_fault_no_page) {
     poses[0].position_m.x += 0.1 * std::sin(0.01 * i);  // parts and overlaps
     poses[0].position_m.z = 0.2 * std::cos(0.002 * i);
   };
-  expect_no_allocation_and_no_fault(scene, poses, place, 700, 5000);
+  expect_no_allocation_and_no_fault(scene, poses, place, effort(700, 100), effort(5000, 500));
 }
 
 }  // namespace

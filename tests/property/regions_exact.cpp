@@ -115,7 +115,7 @@ TEST(RegionsRest, where_more_comes_near_than_there_is_room_for) {
   const BakedBody outer(bowl(40, 60, 1), kRegions);
   constexpr double kDelta = 0.05;
   BakedScene scene({inner.view, outer.view}, {{0, 1}}, exact_settings(kDelta));
-  for (int i = 0; i < 30; ++i) {
+  for (int i = 0; i < effort(30, 8); ++i) {
     const Pose poses[] = {{{0.02 * kDelta * i - 0.01, 0, 0}, {}}, {}};
     const TickResult result = tick_or_fail(*scene.engine, poses);
     ASSERT_GT(result.contacts.size(), 20u);
@@ -131,7 +131,7 @@ TEST(RegionsRest, where_nothing_that_is_kept_would_last) {
   const BakedBody inner(ball(80, 120, 0.97), options);
   const BakedBody outer(bowl(80, 120, 1), options);
   constexpr double kDelta = 0.05;
-  constexpr int kTicks = 20;
+  constexpr int kTicks = effort(20, 6);
   BakedScene scene({inner.view, outer.view}, {{0, 1}}, exact_settings(kDelta));
   std::uint64_t units = 0;
   std::uint64_t cold = 0;
@@ -640,7 +640,7 @@ TEST(RegionSearch, a_climb_ends_early_only_where_no_neighbour_is_nearer) {
   const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
   int ended = 0, in_vain = 0, moved = 0;
   for (std::uint32_t region = 0; region < truth.size(); ++region) {
-    for (std::uint32_t which = 0; which < 20; ++which) {
+    for (std::uint32_t which = 0; which < effort(20u, 8u); ++which) {
       Meter meter({}, {});
       regions::Pace pace(meter);
       regions::Witness w =
@@ -687,7 +687,7 @@ TEST(RegionSearch, a_climb_tells_what_is_near_in_the_regions_beside) {
   const auto& triangles = bodies().a.view.region_triangles;
   int beyond = 0;
   for (std::uint32_t region = 0; region < regions; ++region) {
-    for (std::uint32_t which = 0; which < 20; ++which) {
+    for (std::uint32_t which = 0; which < effort(20u, 8u); ++which) {
       Meter meter({}, {});
       regions::Pace pace(meter);
       const regions::Witness from =

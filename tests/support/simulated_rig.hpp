@@ -12,11 +12,11 @@
 #include "hal/simulator/open_device.hpp"
 #include "hal/simulator/port.hpp"
 #include "hal/transport/streamed_device.hpp"
+#include "time.hpp"
 #include "virtual_clock.hpp"
 
 namespace palpate::hal::test {
 
-inline constexpr std::uint64_t kMs = 1'000'000;
 inline constexpr std::uint64_t kTick_ns = kMs;
 inline constexpr std::uint64_t kCommandLife_ns = 10 * kMs;
 

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <thread>
 
+#include "../support/time.hpp"
 #include "../support/tiny_image.hpp"
 #include "../support/usbip_client.hpp"
 #include "hal/flash/update.hpp"
@@ -21,9 +22,8 @@ namespace {
 
 using simulator::OpenDevice;
 using simulator::OpenDeviceOptions;
+using test::kMs;
 using test::UsbipTransport;
-
-constexpr std::uint64_t kMs = 1'000'000;
 
 /// The longest life that the protocol knows: what a shared machine may stand still for.
 OpenDeviceOptions patient() {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "../support/packets.hpp"
+#include "../support/time.hpp"
 #include "../support/usbip_client.hpp"
 #include "hal/protocol/host_end.hpp"
 #include "hal/simulator/open_device.hpp"
@@ -17,9 +18,8 @@ namespace palpate::hal::usbip {
 namespace {
 
 using simulator::OpenDevice;
+using test::kMs;
 using Bytes = std::vector<std::byte>;
-
-constexpr std::uint64_t kMs = 1'000'000;
 
 Bytes from_hex(const std::string& text) {
   Bytes bytes;
