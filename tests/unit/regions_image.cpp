@@ -14,6 +14,7 @@
 #include "rt_core/regions/component.hpp"
 #include "rt_core/regions/region_triangle.hpp"
 #include "tests/support/baked_scene.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/unit/mesh_support.hpp"
 
@@ -215,7 +216,7 @@ TEST(RegionImage, Components_of_an_older_image_are_not_told_apart) {
 TEST(RegionImage, Random_damage_is_refused_or_harmless) {
   std::mt19937 rng(5);
   int accepted = 0;
-  for (int round = 0; round < 400; ++round) {
+  for (int round = 0; round < effort(400, 80); ++round) {
     Damaged image;
     const SectionId id = std::array{SectionId::region_nodes, SectionId::region_triangles,
                                     SectionId::regions}[rng() % 3];
