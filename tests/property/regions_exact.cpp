@@ -128,8 +128,9 @@ TEST(RegionsRest, where_more_comes_near_than_there_is_room_for) {
 TEST(RegionsRest, where_nothing_that_is_kept_would_last) {
   bake::BakeOptions options = options_for(kRegions);
   options.delta_rel = 0.005;  // many regions
-  const BakedBody inner(ball(80, 120, 0.97), options);
-  const BakedBody outer(bowl(80, 120, 1), options);
+  constexpr std::uint32_t kRings = effort(80u, 40u);
+  const BakedBody inner(ball(kRings, 3 * kRings / 2, 0.97), options);
+  const BakedBody outer(bowl(kRings, 3 * kRings / 2, 1), options);
   constexpr double kDelta = 0.05;
   constexpr int kTicks = effort(20, 6);
   BakedScene scene({inner.view, outer.view}, {{0, 1}}, exact_settings(kDelta));
