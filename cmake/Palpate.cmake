@@ -31,10 +31,8 @@ add_library(palpate_flags INTERFACE)
 target_compile_options(palpate_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wdouble-promotion -Wold-style-cast -Wcast-align
   -Wundef -Wformat=2 -Wvla -Wmissing-declarations $<$<NOT:$<CONFIG:Release>>:-Werror>)
-if(NOT PALPATE_UNITY)  # which of a file's names hide which is told file by file
+if(NOT PALPATE_UNITY OR CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # Clang also counts what files of a folder have of one name
   target_compile_options(palpate_flags INTERFACE -Wshadow)
-elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(palpate_flags INTERFACE -Wshadow=local)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 sees these in std::string and in CGAL's inlined code, where there is none.

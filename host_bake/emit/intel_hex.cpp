@@ -17,9 +17,9 @@ void append_record(std::uint16_t address, RecordType type, std::span<const std::
                    std::string& out) {
   unsigned sum = 0;
   const auto put = [&](unsigned byte) {
-    constexpr char kDigits[] = "0123456789ABCDEF";
-    out += kDigits[byte >> 4 & 15];
-    out += kDigits[byte & 15];
+    constexpr char kUpperCase[] = "0123456789ABCDEF";
+    out += kUpperCase[byte >> 4 & 15];
+    out += kUpperCase[byte & 15];
     sum += byte;
   };
   out += ':';

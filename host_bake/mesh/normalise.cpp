@@ -46,9 +46,9 @@ Extent box_of(const Mesh& mesh) {
 /// The smallest sphere about the points, by CGAL's exact algorithm in double arithmetic (Fischer
 /// and Gartner 2003); its rounding is taken up by radius_about().
 Point centre_of(const std::vector<Point>& points) {
-  using Kernel = CGAL::Simple_cartesian<double>;
-  using Traits = CGAL::Min_sphere_of_points_d_traits_3<Kernel, double>;
-  std::vector<Kernel::Point_3> spheres;
+  using Plain = CGAL::Simple_cartesian<double>;
+  using Traits = CGAL::Min_sphere_of_points_d_traits_3<Plain, double>;
+  std::vector<Plain::Point_3> spheres;
   spheres.reserve(points.size());
   for (const Point& p : points) spheres.emplace_back(p[0], p[1], p[2]);
   CGAL::Min_sphere_of_spheres_d<Traits> smallest(spheres.begin(), spheres.end());

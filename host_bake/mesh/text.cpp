@@ -13,10 +13,10 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' |
 
 /// What a message shows of a word of the file: short, printable.
 std::string quoted(std::string_view word) {
-  constexpr std::size_t kShown = 24;
+  constexpr std::size_t kMostShown = 24;
   std::string text = "'";
-  for (const char c : word.substr(0, kShown)) text += c >= ' ' && c <= '~' ? c : '?';
-  return text + (word.size() > kShown ? "...'" : "'");
+  for (const char c : word.substr(0, kMostShown)) text += c >= ' ' && c <= '~' ? c : '?';
+  return text + (word.size() > kMostShown ? "...'" : "'");
 }
 
 /// from_chars knows no plus sign.

@@ -67,10 +67,10 @@ TEST(ReportBase64, is_that_of_RFC_4648) {
 
 TEST(ReportJson, lines_hold_a_figure_a_frame) {
   const ReportInput input = replay_of(5);
-  const auto json = report_json(input, frames_of(5));
-  EXPECT_EQ(json.at("kind"), "replay");
-  EXPECT_EQ(json.at("frames").at("count"), 5);
-  const auto& fast = json.at("lines").at(1);
+  const auto made = report_json(input, frames_of(5));
+  EXPECT_EQ(made.at("kind"), "replay");
+  EXPECT_EQ(made.at("frames").at("count"), 5);
+  const auto& fast = made.at("lines").at(1);
   EXPECT_EQ(fast.at("name"), "fast");
   EXPECT_EQ(floats(fast.at("force_N"))[3], 0.3f);
   EXPECT_EQ(floats(fast.at("time_us"))[3], 4.0f);
@@ -79,14 +79,14 @@ TEST(ReportJson, lines_hold_a_figure_a_frame) {
   const std::vector<float> errors = floats(fast.at("error_m"));
   EXPECT_TRUE(std::isnan(errors[0]));
   EXPECT_NEAR(double(errors[3]), 2e-6, 1e-12);
-  EXPECT_FALSE(json.at("lines").at(0).contains("error_m"));
+  EXPECT_FALSE(made.at("lines").at(0).contains("error_m"));
 }
 
 TEST(ReportJson, rounding_counts_as_no_error) {
   ReportInput input = replay_of(3);
   for (TickRow& row : input.lines[1].ticks) row.min_distance_m += 1e-16 - 2e-6;
-  const auto json = report_json(input, frames_of(3));
-  EXPECT_EQ(floats(json.at("lines").at(1).at("error_m"))[2], 0.0f);
+  const auto made = report_json(input, frames_of(3));
+  EXPECT_EQ(floats(made.at("lines").at(1).at("error_m"))[2], 0.0f);
 }
 
 TEST(ReportJson, ticks_that_were_not_timed_are_gaps) {
@@ -94,17 +94,17 @@ TEST(ReportJson, ticks_that_were_not_timed_are_gaps) {
   for (ReportLine& line : input.lines) {
     for (TickRow& row : line.ticks) row.time_ns = 0;
   }
-  const auto json = report_json(input, frames_of(4));
-  for (const float us : floats(json.at("lines").at(0).at("time_us"))) EXPECT_TRUE(std::isnan(us));
-  EXPECT_TRUE(json.at("latency").is_null());
+  const auto made = report_json(input, frames_of(4));
+  for (const float us : floats(made.at("lines").at(0).at("time_us"))) EXPECT_TRUE(std::isnan(us));
+  EXPECT_TRUE(made.at("latency").is_null());
 }
 
 TEST(ReportJson, long_recordings_say_what_was_left_out) {
   const ReportInput input = replay_of(2 * kMaxFrames + 1);
-  const auto json = report_json(input, frames_of(2 * kMaxFrames + 1));
-  EXPECT_EQ(json.at("frames").at("stride"), 3);
-  ASSERT_EQ(json.at("notes").size(), 1u);
-  EXPECT_EQ(floats(json.at("lines").at(0).at("force_N")).size(), json.at("frames").at("count"));
+  const auto made = report_json(input, frames_of(2 * kMaxFrames + 1));
+  EXPECT_EQ(made.at("frames").at("stride"), 3);
+  ASSERT_EQ(made.at("notes").size(), 1u);
+  EXPECT_EQ(floats(made.at("lines").at(0).at("force_N")).size(), made.at("frames").at("count"));
 }
 
 TEST(ReportJson, settings_without_error_are_drawn_below_all_others) {
@@ -112,21 +112,21 @@ TEST(ReportJson, settings_without_error_are_drawn_below_all_others) {
   input.kind = ReportKind::sweep;
   input.settings = read_sweep(PALPATE_TEST_DATA "/sweep.json");
   input.settings[1].force_nrmse = 1e-6;  // rounding
-  const auto json = report_json(input, {});
+  const auto made = report_json(input, {});
   double least = 1;
-  for (const auto& s : json.at("settings")) {
+  for (const auto& s : made.at("settings")) {
     const double error = s.at("force_nrmse");
     if (error > 1e-4) {
       EXPECT_EQ(s.at("drawn_nrmse"), error);
       least = std::min(least, error);
     }
   }
-  for (const auto& s : json.at("settings")) {
+  for (const auto& s : made.at("settings")) {
     if (s.at("force_nrmse") <= 1e-4) {
       EXPECT_EQ(s.at("drawn_nrmse"), least / 2);
     }
   }
-  EXPECT_TRUE(json.at("lines").empty());
+  EXPECT_TRUE(made.at("lines").empty());
 }
 
 class ReportView : public ::testing::Test {
@@ -142,15 +142,15 @@ class ReportView : public ::testing::Test {
 
 TEST_F(ReportView, bodies_share_an_image_and_have_tracks_of_their_own) {
   const Frames frames = frames_of(6);
-  const auto json = view_json(view_, replay_shown_contacts(view_, frames, {}), frames);
-  EXPECT_EQ(json.at("images").size(), 1u);
-  ASSERT_EQ(json.at("bodies").size(), 2u);
-  const std::vector<float> tool = floats(json.at("bodies").at(0).at("track"));
+  const auto made = view_json(view_, replay_shown_contacts(view_, frames, {}), frames);
+  EXPECT_EQ(made.at("images").size(), 1u);
+  ASSERT_EQ(made.at("bodies").size(), 2u);
+  const std::vector<float> tool = floats(made.at("bodies").at(0).at("track"));
   ASSERT_EQ(tool.size(), 42u);
   EXPECT_NEAR(double(tool[7 * 5]), 0.01,
               1e-7);                 // 0.011 m - 5 * 0.2 mm, from where the scene has it
   EXPECT_EQ(tool[7 * 5 + 6], 1.0f);  // x y z w
-  const auto& contacts = json.at("contacts");
+  const auto& contacts = made.at("contacts");
   const std::size_t shown = floats(contacts.at("distances")).size();
   ASSERT_GT(shown, 0u);
   EXPECT_EQ(floats(contacts.at("points")).size(), 6 * shown);

@@ -133,13 +133,13 @@ void sweep(const SweepArguments& a) {
     differing = run_settings(folder, scene, track, settings, a.runs, show);
   }
   const std::vector<SweepRow> rows = tabulate(folder, settings, a.observer);
-  const std::string json = to_json(rows);
+  const std::string as_json = to_json(rows);
   write_file(folder.file("sweep.csv"), to_csv(rows));
   write_file(folder.file("trade.svg"), trade_plot(rows));
   write_file(folder.file("profile.svg"), profile_plot(folder, rows));
-  write_file(folder.file("sweep.json"), json);
+  write_file(folder.file("sweep.json"), as_json);
   if (a.json) {
-    std::fputs(json.c_str(), stdout);
+    std::fputs(as_json.c_str(), stdout);
   } else if (!a.quiet) {
     print_table(rows);
   }
