@@ -36,7 +36,8 @@ constexpr Key<Scene> kEngineKeys[] = {
      "refine everything nearer than `delta_m` to the original surface, whatever `s0` says"},
     {"force_tolerance_N", "N",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.force_tolerance_N; }, 0, kMost},
-     "`regions`: refinement ends once the certified error of the force is no more"},
+     "`regions`: refinement ends once the certified error of the force is no more and it is known "
+     "which bodies touch"},
     {"interpolate", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.interpolate; }},
      "blend between levels of detail, so that the force has no steps"},
     {"contact_dive", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.contact_dive; }},

@@ -95,6 +95,7 @@ class Narrowing {
     pursuit_.search.fade();
     pursuit_.follow.fade();
     if (!work_.truncated) decide_crossings();
+    if (!work_.truncated) decide_contacts();
   }
 
  private:
@@ -122,8 +123,10 @@ class Narrowing {
   }
 
   /// An interval may stay open by this much, but not down to zero: what crosses has a depth, of
-  /// which the interval says nothing.
+  /// which the interval says nothing. While nothing is felt none may: a tolerance is for how much
+  /// is felt, not for whether anything is.
   float share_of(const Active& item) noexcept {
+    if (felt_ == 0) return 0;
     const double mean_m = work_.demand.tolerance_m / work_.count;
     const float share = item.weight * static_cast<float>(mean_m / work_.pair_of(item).unit_m);
     const float half = 0.5f * work_.upper_of(item);
@@ -275,6 +278,22 @@ class Narrowing {
   void decide_crossings() noexcept {
     for (Active& item : work_.active()) {
       if (item.rest <= 0 && item.width > kClosed) close(work_, item, share_of(item));
+    }
+  }
+
+  /// Each pair of bodies that feels nothing is searched until it does, or has nothing to feel.
+  void decide_contacts() noexcept {
+    const std::span<Active> active = work_.active();
+    std::size_t end = 0;
+    for (std::size_t first = 0; first < active.size(); first = end) {
+      bool felt = false;
+      for (end = first; end < active.size() && active[end].pair == active[first].pair; ++end) {
+        felt |= counts_as_felt(active[end]);
+      }
+      for (std::size_t i = first; i < end && !felt && !work_.truncated; ++i) {
+        close(work_, active[i], 0);
+        felt = counts_as_felt(active[i]);
+      }
     }
   }
 

@@ -107,7 +107,8 @@ struct QueryResult {
 
 /// How far a query goes.
 struct Demand {
-  double tolerance_m = 0;  ///< the sum of all open intervals may stay this wide; 0: exact
+  double tolerance_m = 0;  ///< the sum of all open intervals may stay this wide where
+                           ///< something is felt; 0: exact
   bool limited = false;    ///< there is a budget: what is widest goes first
 };
 

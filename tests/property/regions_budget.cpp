@@ -73,6 +73,11 @@ double sum_of_forces(const TickResult& r) {
   return sum;
 }
 
+std::ptrdiff_t contacts_of(const TickResult& r, std::uint32_t pair) {
+  return std::count_if(r.contacts.begin(), r.contacts.end(),
+                       [&](const Contact& c) { return c.pair == pair; });
+}
+
 /// What crosses is known by a distance of zero, and then by how deep it is, which takes a search of
 /// its own: a budget that does for nearly all of a tick has to do for both.
 TEST(RegionsBudget, depths_of_what_crosses_are_known_where_the_budget_nearly_does_for_all) {
@@ -480,6 +485,39 @@ TEST(RegionsBudget, force_tolerance_hides_no_crossing) {
     if (crosses) ++crossing;
   }
   EXPECT_GT(crossing, kTicks / 4);
+}
+
+/// A body that rests on one with a force far above the tolerance comes near another one.
+TEST(RegionsBudget, force_tolerance_hides_no_contact_of_any_pair) {
+  const std::vector<ImageView> images = {bodies().a.view, bodies().b.view, bodies().b.view};
+  const std::vector<BodyPair> pairs = {{0, 1}, {0, 2}};
+  Settings tolerant_settings = kSettings;
+  tolerant_settings.exact = false;
+  tolerant_settings.force_tolerance_N = 4 * kSettings.stiffness_N_per_m * kDelta;
+  BakedScene exact(images, pairs, kSettings);
+  BakedScene tolerant(images, pairs, tolerant_settings);
+  int touching[2] = {}, apart[2] = {};
+  constexpr int kSlide = effort(240, 60);
+  for (int i = 0; i < kSlide; ++i) {
+    const double along = 4.0 * i / kSlide;
+    const Pose poses[3] = {
+        {{}, turn({0.01 * i, 0.004 * i, 0})},
+        {{along < 2 ? 3 : 1.7, 0, 0}, {}},
+        {{-1.81 - 0.04 * std::cos(9 * along), 0.02 * along, 0}, turn({0, 0.2 * along, 0})}};
+    const TickResult truth = tick_or_fail(*exact.engine, poses);
+    const TickResult found = tick_or_fail(*tolerant.engine, poses);
+    EXPECT_EQ(found.certificate.contact, truth.certificate.contact) << i;
+    EXPECT_NE(truth.certificate.contact, ContactStatus::undecided) << i;
+    for (const std::uint32_t pair : {0u, 1u}) {
+      const bool touches = contacts_of(truth, pair) > 0;
+      EXPECT_EQ(contacts_of(found, pair) > 0, touches) << "tick " << i << ", pair " << pair;
+      ++(touches ? touching : apart)[pair];
+    }
+  }
+  for (const int pair : {0, 1}) {
+    EXPECT_GT(touching[pair], kSlide / 4) << pair;
+    EXPECT_GT(apart[pair], kSlide / 4) << pair;
+  }
 }
 
 TEST(RegionsBudget, same_input_gives_the_same_bits) {
