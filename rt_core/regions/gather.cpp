@@ -169,6 +169,13 @@ void measure_witnesses(Work& work) noexcept {
   batch.measure_all();
 }
 
+bool feels_any(const Work& work) noexcept {
+  for (const Active& item : work.active()) {
+    if (work.is_felt(item) && work.is_present(item)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void gather(Work& work) noexcept {
@@ -179,6 +186,7 @@ void gather(Work& work) noexcept {
   measure_witnesses(work);
   measure_kept(work);
   thin_out(work);
+  work.touching = feels_any(work);
   work.weigh_all();
   work.widen_all();
 }

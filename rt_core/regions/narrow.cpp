@@ -103,11 +103,7 @@ class Narrowing {
   void scout_where_none_is_felt() noexcept {
     for (std::uint32_t i = 0; i < work_.memory.pairs.size() && work_.pace.go_on(); ++i) {
       if (margin_of(work_.memory.pairs[i]) > 0 || !may_touch_unfelt(i)) continue;
-      const std::uint32_t state = scout(work_, i, kMostScouted);
-      const std::uint32_t index = state != image::kNone ? work_.active_of(state) : image::kNone;
-      if (index == image::kNone) continue;
-      work_.active()[index].climbed = false;
-      work_.widen(work_.active()[index]);
+      scout(work_, i, kMostScouted);
     }
     work_.truncated = !work_.pace.go_on();
   }

@@ -64,8 +64,9 @@ struct QueryMemory {
   std::span<std::uint32_t> first_state;  ///< [pairs], into states
   std::span<RegionState> states;         ///< [sum over pairs of the regions of a]
   /// [states] The nearest pair known of each region. Its distance is of the last tick in which the
-  /// region was active: of a contact exact, else perhaps a bound from below that is no less than
-  /// delta. Apart from the states, because it is all of them that most stages ask for.
+  /// region was active, or a scout looked at it: of a contact exact, else perhaps a bound from
+  /// below that is no less than delta. Apart from the states, because it is all of them that most
+  /// stages ask for.
   std::span<Witness> witnesses;
   std::span<RegionPairs> kept;     ///< [states]
   std::span<Active> active;        ///< [states], those of a tick in the order of their states

@@ -61,26 +61,26 @@ class Scout {
         unit_of_b_(sqrt_of(frame_.scale2_b)),
         waiting_(places_, Nearer{}) {}
 
-  Witness run() noexcept {
-    Witness found = look_everywhere();
-    if (!found.known() && pace_.go_on()) visit(0, found);
-    while (!found.known() && !waiting_.empty() && pace_.go_on()) {
+  void run() noexcept {
+    bool found = look_everywhere();
+    if (!found && pace_.go_on()) found = visit(0);
+    while (!found && !waiting_.empty() && pace_.go_on()) {
       const std::uint32_t node = waiting_.top().node;
       waiting_.pop();
-      visit(node, found);
+      found = visit(node);
     }
-    return found;
   }
 
  private:
-  Witness look_everywhere() noexcept {
+  /// @return whether a contact is found, as the next
+  bool look_everywhere() noexcept {
     Looks looks;
     regions::look_everywhere(frame_, looks);
     const Witness nearest = nearest_of(work_, frame_, looks);
     std::uint32_t behind = 0;
     for (std::uint32_t i = 0; i < looks.count; ++i) behind += is_behind(looks.pairs[i]) ? 1u : 0u;
     work_.memory.containment[pair_].suspected = 2 * behind > looks.count;
-    return nearest.nearer_than(limit_) ? nearest : Witness{};
+    return take(nearest);
   }
 
   /// Whether the middle of a triangle of a is on the inner side of one of b.
@@ -90,24 +90,39 @@ class Scout {
     return dot(normal_of(near), widened(place - centre_of(near))) < 0;
   }
 
-  void visit(std::uint32_t node, Witness& found) noexcept {
+  bool visit(std::uint32_t node) noexcept {
     const std::uint32_t region = frame_.a->region_nodes[node].region;
     if (region == image::kNone) {
       push_below(node);
-      return;
+      return false;
     }
     double& far_until = work_.memory.scouted[first_state_ + region];
-    if (way_ < far_until) return;
+    if (way_ < far_until) return false;
     Looks looks;
     look_over(frame_, region, 0, kMostLooks, looks);
     const Witness nearest = nearest_of(work_, frame_, looks);
-    if (nearest.nearer_than(limit_)) {
-      found = nearest;
-      return;
-    }
+    if (take(nearest)) return true;
     const float more = nearest.distance - limit_;
     const float most = kLasts * limit_;
     far_until = way_ + static_cast<double>(more < most ? more : most);
+    return false;
+  }
+
+  /// What is not near enough by itself may have a neighbour that is: the rest of the tick goes on
+  /// from there. After a jump no witness of before is better.
+  bool take(const Witness& pair) noexcept {
+    const bool found = pair.nearer_than(limit_);
+    if (!pair.nearer_than(Work::kClimbReach * limit_)) return false;
+    const std::uint32_t state = first_state_ + frame_.a->region_triangles[pair.a].region;
+    Witness& known = work_.memory.witnesses[state];
+    if (!work_.swept && known.nearer_than(pair.distance)) return false;
+    known = pair;
+    const std::uint32_t index = work_.active_of(state);
+    if (index != image::kNone) {
+      work_.active()[index].climbed = false;
+      work_.widen(work_.active()[index]);
+    }
+    return found;
   }
 
   void push_below(std::uint32_t index) noexcept {
@@ -180,21 +195,14 @@ class Scout {
 
 }  // namespace
 
-std::uint32_t scout(Work& work, std::uint32_t pair, double most_units) noexcept {
-  const QueryMemory& memory = work.memory;
-  const PairFrame& frame = memory.frames[pair];
-  if (!can_look(frame) || !work.pace.go_on()) return image::kNone;
+void scout(Work& work, std::uint32_t pair, double most_units) noexcept {
+  if (!can_look(work.memory.frames[pair]) || !work.pace.go_on()) return;
   const double left = work.units_left();
   const double units = left < most_units ? left : most_units;
-  if (units < static_cast<double>(kUnitsOfLooks)) return image::kNone;
+  if (units < static_cast<double>(kUnitsOfLooks)) return;
   work.pace.limit(static_cast<std::uint64_t>(units));
-  const Witness found = Scout(work, pair).run();
+  Scout(work, pair).run();
   work.pace.no_limit();
-  if (!found.known()) return image::kNone;
-  const std::uint32_t region = frame.a->region_triangles[found.a].region;
-  const std::uint32_t state = memory.first_state[pair] + region;
-  memory.witnesses[state] = found;
-  return state;
 }
 
 }  // namespace palpate::regions

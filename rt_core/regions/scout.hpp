@@ -13,14 +13,14 @@ namespace palpate::regions {
 /// fit each other, one look at each of sixteen regions does; and whether most of those are behind
 /// what is nearest to them makes it suspect that one body is inside the other (containment.hpp).
 /// Regions that have been looked at in vain are passed over in the ticks to come, until they may
-/// have come near: so the scouts of bodies that slide get farther from tick to tick.
+/// have come near: so the scouts of bodies that slide get farther from tick to tick. What is not
+/// quite near enough becomes a witness as well, for the rest of the tick to climb from.
 ///
 /// Nothing is proved by that. It takes a third of what a search of both trees takes that ends with
 /// the first pair near enough (docs/TRIED.md, "Any contact first").
 /// @param pair  whose images may have no grid: then nothing is done
 /// @param most_units  to take for it, also where the tick has more
-/// @return the region's state; image::kNone where nothing has been found
 /// Cost: that and a batch, or all of a that seems to be nearer.
-std::uint32_t scout(Work& work, std::uint32_t pair, double most_units) noexcept;
+void scout(Work& work, std::uint32_t pair, double most_units) noexcept;
 
 }  // namespace palpate::regions

@@ -20,8 +20,8 @@ constexpr float kNotFelt = 1e-3f;
 constexpr float kShallow = 0.1f;
 constexpr float kNoContact = 0.1f;
 constexpr float kNotClimbed = 5;
-/// Neighbours of a witness farther than this many delta are not looked at.
-constexpr float kClimbReach = 2;
+/// Where nothing is felt it is more likely to be where something has been seen near.
+constexpr float kUnseen = 0.025f;
 
 }  // namespace
 
@@ -50,10 +50,10 @@ bool Work::may_climb(const Active& item) const noexcept {
   return !item.climbed && witness_of(item).nearer_than(kClimbReach * delta_of(item));
 }
 
-float Work::weight_after_jump(const Active& item) const noexcept {
+float Work::weight_of_unknown(const Active& item) const noexcept {
   const Witness& witness = witness_of(item);
-  const float climb = may_climb(item) ? kNotClimbed : 1;
-  if (!witness.known()) return kNoContact;
+  const float climb = swept && may_climb(item) ? kNotClimbed : 1;
+  if (!witness.known()) return touching ? kNoContact : kUnseen;
   if (!is_felt(item)) return climb * kNoContact * delta_of(item) / witness.distance;
   const float depth = 1 - upper_of(item) / delta_of(item);
   return climb * (kShallow + depth * depth);
@@ -74,7 +74,7 @@ void Work::widen(Active& item) noexcept {
   const bool may_cross = demand.limited && !swept && item.rest <= 0 && unknown;
   const float doubt = may_cross ? kMayCross * delta_of(item) : 0;
   item.urgency = item.width > kClosed ? worth(item) + doubt : 0;
-  if (swept && demand.limited) item.urgency *= weight_after_jump(item);
+  if ((swept || !touching) && demand.limited) item.urgency *= weight_of_unknown(item);
   if (!is_present(item)) item.urgency *= kNotFelt;
 }
 

@@ -12,6 +12,8 @@ namespace palpate::regions {
 
 struct Work {
   static constexpr std::uint32_t kLeastRoom = 32;  ///< a corner near a corner
+  /// Neighbours of a witness farther than this many delta are not looked at.
+  static constexpr float kClimbReach = 2;
 
   Work(QueryMemory& query_memory, const Demand& query_demand, Meter& query_meter) noexcept
       : memory(query_memory),
@@ -113,8 +115,8 @@ struct Work {
   /// Of an interval in the order of a tick: its width, with a tolerance or where it is narrow over
   /// what a search of it costs.
   [[nodiscard]] float worth(const Active& item) const noexcept;
-  /// By what to multiply that after a jump.
-  [[nodiscard]] float weight_after_jump(const Active& item) const noexcept;
+  /// By what to multiply that under a budget after a jump, and while nothing is felt.
+  [[nodiscard]] float weight_of_unknown(const Active& item) const noexcept;
 
   QueryMemory& memory;
   Demand demand;
@@ -124,6 +126,7 @@ struct Work {
   std::uint32_t count = 0;     ///< of active regions
   std::uint32_t searches = 0;  ///< of whole regions, completed
   bool swept = false;          ///< nothing was known when the tick began (sweep.hpp)
+  bool touching = true;        ///< something is felt as the tick begins
   bool followed = false;       ///< searches did not keep up (follow.hpp)
   bool truncated = false;      ///< the budget ended refinement
   QueryResult result{.min_distance_m = std::numeric_limits<double>::infinity(),
