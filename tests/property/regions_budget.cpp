@@ -529,7 +529,7 @@ TEST(RegionsBudget, force_tolerance_hides_no_contact_of_any_pair) {
   for (int i = 0; i < kSlide; ++i) {
     const double along = 4.0 * i / kSlide;
     const Pose poses[3] = {
-        {{}, turn({0.01 * i, 0.004 * i, 0})},
+        {{}, turn({0.6 * along, 0.24 * along, 0})},
         {{along < 2 ? 3 : 1.7, 0, 0}, {}},
         {{-1.81 - 0.04 * std::cos(9 * along), 0.02 * along, 0}, turn({0, 0.2 * along, 0})}};
     const TickResult truth = tick_or_fail(*exact.engine, poses);
