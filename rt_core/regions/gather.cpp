@@ -171,7 +171,7 @@ void measure_witnesses(Work& work) noexcept {
 
 bool feels_any(const Work& work) noexcept {
   for (const Active& item : work.active()) {
-    if (work.is_felt(item) && work.is_present(item)) return true;
+    if (work.is_contact(item)) return true;
   }
   return false;
 }

@@ -112,7 +112,7 @@ class Narrowing {
     bool open = false;
     for (const Active& item : work_.active()) {
       if (item.pair != pair) continue;
-      if (work_.is_felt(item) && work_.is_present(item)) return false;
+      if (work_.is_contact(item)) return false;
       open |= item.width > kClosed;
     }
     return open;
@@ -284,11 +284,11 @@ class Narrowing {
     for (std::size_t first = 0; first < active.size(); first = end) {
       bool felt = false;
       for (end = first; end < active.size() && active[end].pair == active[first].pair; ++end) {
-        felt |= counts_as_felt(active[end]);
+        felt |= work_.is_contact(active[end]);
       }
       for (std::size_t i = first; i < end && !felt && !work_.truncated; ++i) {
         close(work_, active[i], 0);
-        felt = counts_as_felt(active[i]);
+        felt = work_.is_contact(active[i]);
       }
     }
   }
@@ -307,20 +307,17 @@ class Narrowing {
     if (felt_ + crossing_ > known) leave_for_report();
   }
   void count_in(const Active& item) noexcept {
-    felt_ += counts_as_felt(item) ? 1u : 0u;
+    felt_ += work_.is_contact(item) ? 1u : 0u;
     wide_ += counts_as_wide(item) ? 1u : 0u;
     crossing_ += work_.is_crossing(item) ? 1u : 0u;
   }
   void count_out(const Active& item) noexcept {
-    felt_ -= counts_as_felt(item) ? 1u : 0u;
+    felt_ -= work_.is_contact(item) ? 1u : 0u;
     wide_ -= counts_as_wide(item) ? 1u : 0u;
     crossing_ -= work_.is_crossing(item) ? 1u : 0u;
   }
-  bool counts_as_felt(const Active& item) noexcept {
-    return work_.is_felt(item) && work_.is_present(item);
-  }
   bool counts_as_wide(const Active& item) noexcept {
-    return item.width > kWide * work_.delta_of(item) && counts_as_felt(item);
+    return item.width > kWide * work_.delta_of(item) && work_.is_contact(item);
   }
 
   void leave_for_report() noexcept { work_.leave_for_report(felt_, crossing_); }

@@ -26,7 +26,7 @@ class Report {
     std::uint32_t pending = 0;
     for (std::uint32_t i = 0; i < active_.size(); ++i) {
       const Active& item = active_[i];
-      if ((work_.is_felt(item) && work_.is_present(item)) || is_way_out(item)) {
+      if (work_.is_contact(item) || is_way_out(item)) {
         batch[pending++] = i;
       }
       if (pending == kBatch || (i + 1 == active_.size() && pending > 0)) {

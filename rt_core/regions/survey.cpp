@@ -52,7 +52,7 @@ class Survey {
 
   bool run() noexcept {
     for (const Active& item : work_.active()) {
-      if (!work_.is_felt(item) || !work_.is_present(item)) continue;
+      if (!work_.is_contact(item)) continue;
       ++felt_;
       crossing_ += work_.is_crossing(item) ? 1u : 0u;
     }

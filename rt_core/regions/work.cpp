@@ -20,7 +20,7 @@ constexpr float kNotFelt = 1e-3f;
 constexpr float kShallow = 0.1f;
 constexpr float kNoContact = 0.1f;
 constexpr float kNotClimbed = 5;
-/// Where nothing is felt it is more likely to be where something has been seen near.
+/// The same while nothing is felt at all: contacts are likelier where something was seen near.
 constexpr float kUnseen = 0.025f;
 
 }  // namespace

@@ -62,6 +62,10 @@ struct Work {
   [[nodiscard]] bool is_present(const Active& item) const noexcept {
     return memory.crowd.has(item.state);
   }
+  /// It is felt, and not thinned out.
+  [[nodiscard]] bool is_contact(const Active& item) const noexcept {
+    return is_felt(item) && is_present(item);
+  }
   [[nodiscard]] double width_m(const Active& item) const noexcept {
     return static_cast<double>(item.width) * pair_of(item).unit_m;
   }
