@@ -91,7 +91,7 @@ struct Settings {
   bool stop_on_surface = false;
 
   /// Regions engine: refinement may end once the certified error of the force is no more; 0: exact.
-  /// Whether two bodies touch is decided all the same.
+  /// Whether two bodies touch is decided all the same, as far as a budget goes.
   double force_tolerance_N = 0;
   double stiffness_N_per_m = 600.0;  ///< of the penalty force in any one direction; >= 0
   /// Contacts nearer together than this count as one where the force is shared out (Places); it

@@ -72,7 +72,7 @@ class Scout {
   }
 
  private:
-  /// @return whether a contact is found, as the next
+  /// @return whether a contact is found; so do visit() and take()
   bool look_everywhere() noexcept {
     Looks looks;
     regions::look_everywhere(frame_, looks);
