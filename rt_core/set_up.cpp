@@ -72,8 +72,23 @@ struct Layout {
   std::span<regions::Unfinished> unfinished;
 };
 
+std::size_t smaller(std::size_t a, std::size_t b) noexcept { return a < b ? a : b; }
+std::size_t larger(std::size_t a, std::size_t b) noexcept { return a < b ? b : a; }
+
 std::size_t regions_of(const Scene& scene, const BodyPair& pair) noexcept {
   return scene.bodies[pair.a].regions.size();
+}
+
+std::size_t regions_of(const Scene& scene) noexcept {
+  std::size_t all = 0;
+  for (const BodyPair& pair : scene.pairs) all += regions_of(scene, pair);
+  return all;
+}
+
+/// What limits ask for, but a region has one contact at most.
+std::size_t contacts_for(const Scene& scene, const Limits& limits, EngineKind kind) noexcept {
+  if (kind == EngineKind::levels) return limits.contacts;
+  return smaller(limits.contacts, regions_of(scene));
 }
 
 void lay_out_levels(Arena& arena, const Scene& scene, const Limits& limits, Layout& out) noexcept {
@@ -89,13 +104,9 @@ void lay_out_levels(Arena& arena, const Scene& scene, const Limits& limits, Layo
 }
 
 void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
-  std::size_t all = 0;
+  const std::size_t all = regions_of(scene);
   std::size_t most = 0;
-  for (const BodyPair& pair : scene.pairs) {
-    const std::size_t count = regions_of(scene, pair);
-    all += count;
-    most = count > most ? count : most;
-  }
+  for (const BodyPair& pair : scene.pairs) most = larger(most, regions_of(scene, pair));
   out.frames = arena.array<regions::PairFrame>(scene.pairs.size());
   out.containment = arena.array<regions::Containment>(scene.pairs.size());
   out.first_state = arena.array<std::uint32_t>(scene.pairs.size());
@@ -119,12 +130,14 @@ Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKin
   out.engine = arena.array<Engine>(1);
   out.states = arena.array<levels::PairState>(scene.pairs.size());
   out.poses = arena.array<Pose>(scene.bodies.size());
-  out.contacts = arena.array<Contact>(limits.contacts);
-  out.felt = arena.array<force::Felt>(limits.contacts);
-  out.ranking = arena.array<force::Ranked>(limits.contacts);
+  const std::size_t contacts = contacts_for(scene, limits, kind);
+  out.contacts = arena.array<Contact>(contacts);
+  out.felt = arena.array<force::Felt>(contacts);
+  out.ranking = arena.array<force::Ranked>(contacts);
   out.cells = arena.array<force::DeepCells>(1);
   // Contacts that are nobody's copies have corners of their own.
-  out.copies = arena.array<force::Place>(force::Spot::kCorners * limits.contacts);
+  out.copies = arena.array<force::Place>(
+      smaller(force::Spot::kCorners * limits.contacts, force::Places::room_for(contacts)));
   out.places = arena.array<force::Place>(limits.clusters);
   if (kind == EngineKind::levels) {
     lay_out_levels(arena, scene, limits, out);

@@ -7,9 +7,6 @@ namespace {
 /// Beyond that a corner finds no room. Half full, tables of thousands take up to 50.
 constexpr int kMostProbes = 128;
 
-/// Of a table, for each corner that may come into use.
-constexpr std::size_t kRoom = 2;
-
 /// Less than this may be rounding, and then which corner it goes to is chance.
 constexpr double kLeastShare = 1e-9;
 
@@ -38,7 +35,7 @@ std::uint32_t hash_of(std::int32_t x, std::int32_t y, std::int32_t z) noexcept {
 }  // namespace
 
 void Places::begin(double width_m, std::size_t contacts) noexcept {
-  const std::size_t roomy = kRoom * Spot::kCorners * contacts;
+  const std::size_t roomy = room_for(contacts);
   in_use_ = roomy < table_.size() ? roomy : table_.size();
   per_m_ = width_m > 0 ? 1 / width_m : 0;
   full_ = false;

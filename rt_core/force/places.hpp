@@ -39,6 +39,11 @@ struct Spot {
 /// shares themselves too, for those below 1e-9 are kept and take no room.
 class Places {
  public:
+  /// Places of a table in which so many contacts find theirs at once: two for each corner.
+  static constexpr std::size_t room_for(std::size_t contacts) noexcept {
+    return 2 * Spot::kCorners * contacts;
+  }
+
   Places() = default;
   /// @param table  less than Spot::kNone; twice as many as corners in use are found at once
   explicit Places(std::span<Place> table) noexcept : table_(table) {}

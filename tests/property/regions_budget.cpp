@@ -645,6 +645,20 @@ TEST(RegionsBudget, few_contacts_are_a_reported_graceful_stop) {
   EXPECT_TRUE(met);
 }
 
+TEST(RegionsBudget, every_region_has_room_for_its_contact_and_none_for_more) {
+  Settings wide = kSettings;
+  wide.delta_m = 4;
+  BakedScene scene = scene_with(wide);
+  const Pose poses[2] = {motion(0), {}};
+  const TickResult r = tick_or_fail(*scene.engine, poses);
+  EXPECT_EQ(r.contacts.size(), bodies().a.view.regions.size());
+  EXPECT_FALSE(r.certificate.truncated_by_memory);
+  const auto bytes = [&](std::uint32_t contacts) {
+    return required_bytes(scene.scene(), {.contacts = contacts}, EngineKind::regions);
+  };
+  EXPECT_EQ(bytes(1u << 20), bytes(Limits{}.contacts));
+}
+
 TEST(RegionsRefusals, image_without_regions_is_refused) {
   const BakedBody levels_only(box(1, 1, 1));
   const std::vector<ImageView> views = {levels_only.view, bodies().b.view};
