@@ -254,12 +254,14 @@ void settle_side(Work& work, std::uint32_t index) noexcept {
     kept.doubtful = kept.unseen = kept.unanswered = false;
   }
   if (work.demand.limited && !work.swept) work.limit_to(kMostAsked);
+  const Component before = kept.contained;
   const Side side = answer(work, kept, pair);
   work.pace.no_limit();
   if (kept.asked) return;
+  const bool as_before = kept.inside && side == Side::inside && kept.contained == before;
   kept.inside = side == Side::inside;
   kept.doubtful |= side == Side::unknown;
-  kept.nearest = {};
+  if (!as_before) kept.nearest = {};  // else it still leads out, and need not be found again
 }
 
 /// Looks from the component that is inside, where it is one of several: from its first triangles.

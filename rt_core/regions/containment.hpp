@@ -35,6 +35,7 @@ struct SideQuestion {
 struct Component {
   bool of_b = false;
   std::uint32_t first = 0;  ///< triangle of it (component.hpp)
+  bool operator==(const Component&) const = default;
 };
 
 /// What is kept of a pair from tick to tick.
