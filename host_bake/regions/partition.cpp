@@ -93,13 +93,37 @@ class Divider {
     return std::sqrt(squared);
   }
 
+  /// Half its longest edge.
+  double reach_of(std::uint32_t face) const {
+    double squared = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      squared = std::max(squared, squared_norm(point(face, c) - point(face, (c + 1) % 3)));
+    }
+    return 0.5 * std::sqrt(squared);
+  }
+
+  bool are_long(std::span<const std::uint32_t> faces) const {
+    return std::ranges::all_of(faces, [&](auto f) { return reach_of(f) > options_.radius; });
+  }
+
+  /// Long faces side by side: divided they would be as long, and far more.
+  bool is_strip(std::span<const std::uint32_t> faces) const {
+    double longest = 0;
+    for (const std::uint32_t f : faces) longest = std::max(longest, reach_of(f));
+    const Vec3d half = 0.5 * extents_of(faces);
+    return half.y <= options_.radius && half.z <= longest + options_.radius;
+  }
+
   /// How many faces go to the left half; 0: it is a region as it stands.
   std::uint32_t divide_region(const Node& node) {
     if (node.count < 2) return 0;
     const double radius = radius_of(node);
-    if (radius > options_.radius) return divide_position(node);
     if (radius < options_.least_share * options_.radius) return 0;
-    return divide_normals(node);
+    const auto faces = faces_of(node);
+    const bool large = radius > options_.radius;
+    if (large && !are_long(faces)) return divide_position(node);
+    const std::uint32_t left = divide_normals(node);
+    return large && left == 0 && !is_strip(faces) ? divide_position(node) : left;
   }
 
   /// In the middle of the longest principal axis.
@@ -166,8 +190,8 @@ class Divider {
     return best;
   }
 
-  /// Squared diagonal of the box along the principal axes of some faces' corners.
-  double size_of(std::span<const std::uint32_t> faces) const {
+  /// Of the box along the principal axes of some faces' corners, the longest last.
+  Vec3d extents_of(std::span<const std::uint32_t> faces) const {
     Moments moments;
     for (const std::uint32_t f : faces) {
       for (std::size_t c = 0; c < 3; ++c) moments.add(point(f, c));
@@ -178,7 +202,11 @@ class Divider {
     for (const std::uint32_t f : faces) {
       for (std::size_t c = 0; c < 3; ++c) widen(low, high, axes * point(f, c));
     }
-    return squared_norm(high - low);
+    return high - low;
+  }
+
+  double size_of(std::span<const std::uint32_t> faces) const {
+    return squared_norm(extents_of(faces));
   }
 
   /// Two groups of like normals (2-means, seeded by the mean and what is farthest from it).

@@ -374,6 +374,36 @@ TEST(RegionTree, Slopes_that_do_not_face_apart_share_regions) {
   EXPECT_NEAR(least_cosine(tree), 0.6, 1e-3);  // of two that lean by atan(0.5)
 }
 
+/// Flanks of a gear, each of needles as long as it is thick.
+TEST(RegionTree, Long_triangles_side_by_side_share_a_region) {
+  const bake::RegionTree tree = tree_of(gear(60, 1, 0.5), 0.02);
+  EXPECT_EQ(tree.triangles.size(), 1920u);
+  EXPECT_LT(tree.regions.size(), 240u);
+  EXPECT_GT(tree.regions.size(), 120u);  // as many as there are flanks
+}
+
+double longest_edge(const image::RegionTriangle& t) {
+  double longest = 0;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const Vec3d edge = regions::corner(t, (k + 1) % 3, 1) - regions::corner(t, k, 1);
+    longest = std::max(longest, norm(edge));
+  }
+  return longest;
+}
+
+/// Else what is detailed would be felt once where it lies on a plate of two triangles.
+TEST(RegionTree, Long_triangles_share_no_region_with_short_ones) {
+  bake::Mesh mesh = gear(60, 1, 0.5);
+  append(mesh, bumpy_ball(30, 40, 0.3), 0.5, 0, 0);
+  const bake::RegionTree tree = tree_of(mesh, 0.02);
+  const double radius = bake::region_options(0.02).radius;
+  std::vector<bool> has_long(tree.regions.size()), has_short(tree.regions.size());
+  for (const image::RegionTriangle& t : tree.triangles) {
+    (longest_edge(t) > 2 * radius ? has_long : has_short)[t.region] = true;
+  }
+  for (std::size_t i = 0; i < tree.regions.size(); ++i) EXPECT_FALSE(has_long[i] && has_short[i]);
+}
+
 TEST(RegionTree, Smallest_meshes_have_one_region) {
   const bake::RegionTree tree = tree_of(box(1, 1, 1), 4);
   EXPECT_GE(tree.regions.size(), 1u);
