@@ -2,9 +2,9 @@
 // Time and accuracy of the region engine on scenes of two detailed objects.
 //
 //   bench_regions [TICKS [SCENE[:DELTA[:LEFT_OUT]]...]]
-//                                                scenes: jaws, tips, golf, socket, screw, joint;
-//                                                default: all, with 0.01, 0.02 and 0.05; detail
-//                                                left out before baking, against all of it
+//                                                scenes: jaws, tips, golf, socket, screw, joint,
+//                                                gears; default: all, with 0.01, 0.02 and 0.05;
+//                                                detail left out before baking, against all of it
 //   bench_regions TICKS paced [KERNELS]          all scenes at 0.02 under budgets of time, longer
 //                                                by as much as FCL takes longer here than .82 ms
 //                                                for one distance of jaws tip to tip
@@ -41,7 +41,6 @@
 #include <utility>
 #include <vector>
 
-#include "host_bake/models/models.hpp"
 #include "tools/bench/scenes.hpp"
 #if defined(PALPATE_BENCH_FCL)
 #include "tools/bench/mesh_fcl.hpp"
@@ -53,12 +52,11 @@ namespace {
 
 constexpr int kStarted = 10;  // ticks after which a budgeted run counts
 
-constexpr SceneName kScenes[] = {{"jaws", "jaw_lower", "jaw_upper", true},
-                                 {"tips", "jaw_lower", "jaw_lower", false, true},
-                                 {"golf", "golf_ball", "golf_ball", false},
-                                 {"socket", "golf_ball", "golf_shell", true},
-                                 {"screw", "screw", "nut", true},
-                                 {"joint", "ball_joint_head", "ball_joint_cup", true}};
+constexpr SceneName kScenes[] = {
+    {"jaws", "jaw_lower", "jaw_upper", true},  {"tips", "jaw_lower", "jaw_lower", false, true},
+    {"golf", "golf_ball", "golf_ball", false}, {"socket", "golf_ball", "golf_shell", true},
+    {"screw", "screw", "nut", true},           {"joint", "ball_joint_head", "ball_joint_cup", true},
+    {"gears", "gear_60", "gear_50", false}};
 
 Budget within(double budget_us) {
   Budget budget;
@@ -260,7 +258,7 @@ void measure(const SceneName& scene, const Asked& asked, int ticks) {
   const double delta_rel = asked.delta_rel;
   const Staged staged(scene, delta_rel, ticks);
   const std::vector<Pose>& poses = staged.poses;
-  const Peer peer(bake::make_model(scene.a), bake::make_model(scene.b));
+  const Peer peer(mesh_of(scene.a), mesh_of(scene.b));
   Bench bench(staged.a, staged.b, staged.settings());
   const Run exact = run(bench, poses, {.peer = &peer});
   print_row(scene.name, delta_rel, {}, exact, exact);
@@ -289,7 +287,7 @@ void measure_paced(int ticks, const regions::Kernels& kernels) {
   constexpr int kAsked = 100;
   constexpr SceneName kTips = kScenes[1];
   const std::vector<Pose> tips_poses = Staged(kTips, kDeltaRel, kAsked).poses;
-  const Peer tips(bake::make_model(kTips.a), bake::make_model(kTips.b));
+  const Peer tips(mesh_of(kTips.a), mesh_of(kTips.b));
   for (const SceneName& scene : kScenes) {
     const Staged staged(scene, kDeltaRel, ticks);
     Bench bench(staged.a, staged.b, staged.settings());

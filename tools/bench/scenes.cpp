@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
+#include <string_view>
 
 #include "host_bake/mesh/check.hpp"
 #include "host_bake/models/models.hpp"
@@ -12,14 +14,37 @@
 namespace palpate::bench {
 namespace {
 
-/// More than any scene needs; regions, which are few, no more than stays in the caches when it is
-/// written anew. Twice as many contacts as regions, for tables of places find room while half full,
-/// and four grid points for each.
+/// More than any scene needs; for regions, eight grid points for each contact that there can be.
 Limits limits_of(EngineKind engine, const ImageView& tool) {
   if (engine == EngineKind::levels) return {.nodes = 1u << 19, .contacts = 1u << 16};
   const auto regions = static_cast<std::uint32_t>(tool.regions.size());
-  const std::uint32_t contacts = std::max(1u << 12, 2 * regions);
-  return {.nodes = 1, .contacts = contacts, .clusters = 4 * contacts};
+  return {.nodes = 1, .clusters = std::max(1u << 14, 8 * regions)};
+}
+
+/// A spur gear as CAD programs export it: every strip of a flank is two needles, as long as the
+/// gear is thick, and its faces are fans. About z; radius 1 m at half the height of its teeth.
+bake::Mesh spur_gear(std::uint32_t teeth) {
+  constexpr std::uint32_t kStripsOfTooth = 8;
+  constexpr double kHalfHeight = 0.08;
+  constexpr double kHalfThickness = 0.5;
+  const std::uint32_t strips = kStripsOfTooth * teeth;
+  const std::uint32_t hub = 2 * strips;
+  bake::Mesh mesh;
+  for (std::uint32_t k = 0; k < strips; ++k) {
+    const double angle = 2 * std::numbers::pi * k / strips;
+    const double radius = 1 + kHalfHeight * std::cos(teeth * angle);
+    const double x = radius * std::cos(angle);
+    const double y = radius * std::sin(angle);
+    mesh.points.insert(mesh.points.end(), {{x, y, -kHalfThickness}, {x, y, kHalfThickness}});
+    const std::uint32_t low = 2 * k;
+    const std::uint32_t next = 2 * ((k + 1) % strips);
+    mesh.faces.insert(mesh.faces.end(), {{low, next, next + 1},
+                                         {low, next + 1, low + 1},
+                                         {hub, next, low},
+                                         {hub + 1, low + 1, next + 1}});
+  }
+  mesh.points.insert(mesh.points.end(), {{0, 0, -kHalfThickness}, {0, 0, kHalfThickness}});
+  return mesh;
 }
 
 Vec3d centre_of(const Body& body) {
@@ -91,9 +116,15 @@ Pose pressed(Bench& wide, const Body& a, double delta, int i) {
 
 }  // namespace
 
+bake::Mesh mesh_of(std::string_view model, std::size_t triangles) {
+  if (model == "gear_60") return spur_gear(60);
+  if (model == "gear_50") return spur_gear(50);
+  return bake::make_model(model, triangles);
+}
+
 Body::Body(const char* model, double delta_rel, bake::ForEngine engine, std::size_t triangles,
            double max_deviation) {
-  const bake::Mesh mesh = bake::make_model(model, triangles);
+  const bake::Mesh mesh = mesh_of(model, triangles);
   bake::BakeOptions options;
   options.engine = engine;
   options.delta_rel = delta_rel;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "host_bake/bake.hpp"
@@ -23,6 +24,10 @@ struct SceneName {
   bool interlock;            ///< as modelled they interlock with a small clearance
   bool upside_down = false;  ///< a is turned by half a turn: tips of teeth meet tips
 };
+
+/// A model of `palpate make-model`, or gear_60 or gear_50, spur gears of so many teeth in needles:
+/// as it is made.
+bake::Mesh mesh_of(std::string_view model, std::size_t triangles = 0);
 
 /// A model, baked in memory.
 struct Body {
