@@ -102,11 +102,13 @@ class Divider {
     return 0.5 * std::sqrt(squared);
   }
 
-  bool are_long(std::span<const std::uint32_t> faces) const {
-    return std::ranges::all_of(faces, [&](auto f) { return reach_of(f) > options_.radius; });
+  /// Longer than a region is wide, and so narrow that two lie side by side within one.
+  bool is_needle(std::uint32_t face) const {
+    const double reach = reach_of(face);
+    return reach > options_.radius && norm(normals_[face]) <= 2 * reach * options_.radius;
   }
 
-  /// Long faces side by side: divided they would be as long, and far more.
+  /// Needles side by side: divided they would be as long, and far more.
   bool is_strip(std::span<const std::uint32_t> faces) const {
     double longest = 0;
     for (const std::uint32_t f : faces) longest = std::max(longest, reach_of(f));
@@ -121,7 +123,9 @@ class Divider {
     if (radius < options_.least_share * options_.radius) return 0;
     const auto faces = faces_of(node);
     const bool large = radius > options_.radius;
-    if (large && !are_long(faces)) return divide_position(node);
+    if (large && !std::ranges::all_of(faces, [&](auto f) { return is_needle(f); })) {
+      return divide_position(node);
+    }
     const std::uint32_t left = divide_normals(node);
     return large && left == 0 && !is_strip(faces) ? divide_position(node) : left;
   }

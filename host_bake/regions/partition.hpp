@@ -12,8 +12,9 @@
 namespace palpate::bake {
 
 struct RegionOptions {
-  /// Regions larger than this are divided; relative to the object's radius. Strips of triangles
-  /// that are longer themselves are not, where they are no wider.
+  /// Regions larger than this are divided; relative to the object's radius. Needles side by side
+  /// are not, where they are no wider: triangles longer than a region is wide, and so narrow that
+  /// two lie side by side within one.
   double radius = 0.06;
   /// Regions in which a part of the surface turns away from the mean normal by more than the angle
   /// of this cosine are divided by normal: two opposite walls must not share a region, or the force
@@ -49,11 +50,11 @@ struct Partition {
 };
 
 /// What is larger than a region is divided in the middle of the longest principal axis of the
-/// triangles' centres. Triangles longer than a region, as CAD models have, are divided by
-/// normal first, and stay together side by side as long as they are no wider than a region. Regions
-/// are divided at a multiple of sixteen near the middle, so that groups are full, across that of
-/// eight directions along the patch which leaves parts with the shortest diagonals. Every group is
-/// in exactly one region. Deterministic. O(n log^2 n).
+/// triangles' centres. Needles alone, as CAD models have them, are divided by normal first, and
+/// stay together side by side as long as they are no wider than a region. Regions are divided at a
+/// multiple of sixteen near the middle, so that groups are full, across that of eight directions
+/// along the patch which leaves parts with the shortest diagonals. Every group is in exactly one
+/// region. Deterministic. O(n log^2 n).
 Partition divide(const NormalMesh& mesh, const RegionOptions& options);
 
 }  // namespace palpate::bake

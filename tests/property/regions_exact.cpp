@@ -208,11 +208,7 @@ double distance_of(std::uint32_t region, const Pose& pose, const PlacedTriangles
 }
 
 const Pose kNear{{1.72, 0.2, 0.3}, turn({0.3, 0.2, -0.4})};
-constexpr double kRounding = 2e-7;  // of the distances of single triangles, up to 1
-
-double rounding_of(const regions::Witness& pair) {
-  return kRounding * std::max(1.0, double(pair.distance));
-}
+constexpr double kRounding = 2e-7;  // of the distances of single triangles
 
 void expect_kept_or_beyond_rest(const regions::Bounds& found, const regions::NearPairs& near,
                                 double d) {
@@ -272,7 +268,7 @@ void expect_pairs_bounded(const SearchedPair& at, const Pose& pose, std::uint32_
           std::find_if(near.pairs, end, [&](const auto& w) { return w.same_pair(pair); });
       const double d = distance_between(moved, triangles[a].source, fixed, others[b].source);
       ASSERT_GE(d / at.pair.unit_m,
-                kept == end ? double(found.rest) : double(kept->distance) - rounding_of(*kept));
+                kept == end ? double(found.rest) : double(kept->distance) - kRounding);
     }
   }
 }
