@@ -76,8 +76,8 @@ class Follower {
     seeds.turn_at = pair.turn;
     const float upper = below_delta(item, witness.distance);
     for (std::uint32_t k = 0; k < seeds.count; ++k) {
-      Witness& seed = seeds.at[k];
-      seed.distance -= moved;
+      seeds.distance[k] -= moved;
+      const Witness seed = seeds.at(k);
       if (seed.distance < upper && !seed.same_pair(witness)) batch.add(index, seed);
     }
   }
@@ -116,7 +116,7 @@ class Follower {
     if (!is_open(item) || seeds.count == 0 || !has_turn(item, kSeedEvery)) return;
     const PairFrame& frame = work_.frame_of(item);
     const std::uint32_t k = work_.memory.pursuit.round / kSeedEvery % seeds.count;
-    Witness seed = seeds.at[k];
+    Witness seed = seeds.at(k);
     seed.distance = kFarthest;  // until it is measured
     climb(*work_.memory.kernels, frame, *work_.memory.search, work_.pace, seed);
     move_seed(*frame.a, k, seed, seeds);

@@ -7,42 +7,61 @@ namespace {
 /// Of the region's radius: what is closer together is one place.
 constexpr float kOnePlace = 0.125f;
 
-bool same_place(const ImageView& a, const Witness& p, const Witness& q) noexcept {
-  if (p.a == q.a || p.b == q.b) return true;
-  const image::RegionTriangle& t = a.region_triangles[p.a];
-  const image::RegionTriangle& u = a.region_triangles[q.a];
-  const float x = t.corners[0] - u.corners[0];
-  const float y = t.corners[1] - u.corners[1];
-  const float z = t.corners[2] - u.corners[2];
+void put(const ImageView& a, const Witness& pair, std::uint32_t index, Seeds& seeds) noexcept {
+  seeds.a[index] = pair.a;
+  seeds.b[index] = pair.b;
+  seeds.distance[index] = pair.distance;
+  const image::RegionTriangle& t = a.region_triangles[pair.a];
+  for (std::uint32_t k = 0; k < 3; ++k) seeds.corner[k][index] = t.corners[k];
+}
+
+/// The first seed that is in a pair's place; seeds.count: none is.
+std::uint32_t in_place_of(const ImageView& a, const Witness& pair, const Seeds& seeds) noexcept {
+  const image::RegionTriangle& t = a.region_triangles[pair.a];
   const float closest = kOnePlace * a.regions[t.region].radius;
-  return x * x + y * y + z * z < closest * closest;
+  std::uint32_t same[kSeeds];
+  for (std::uint32_t i = 0; i < kSeeds; ++i) {
+    const float x = seeds.corner[0][i] - t.corners[0];
+    const float y = seeds.corner[1][i] - t.corners[1];
+    const float z = seeds.corner[2][i] - t.corners[2];
+    const bool close = x * x + y * y + z * z < closest * closest;
+    same[i] = std::uint32_t{close} | std::uint32_t{seeds.a[i] == pair.a} |
+              std::uint32_t{seeds.b[i] == pair.b};
+  }
+  std::uint32_t first = 0;
+  while (first < seeds.count && same[first] == 0) ++first;
+  return first;
+}
+
+std::uint32_t farthest_of(const Seeds& seeds) noexcept {
+  std::uint32_t farthest = 0;
+  for (std::uint32_t i = 1; i < seeds.count; ++i) {
+    if (seeds.distance[i] > seeds.distance[farthest]) farthest = i;
+  }
+  return farthest;
 }
 
 }  // namespace
 
 void note_seed(const ImageView& a, const Witness& pair, Seeds& seeds) noexcept {
-  std::uint32_t farthest = 0;
-  for (std::uint32_t i = 0; i < seeds.count; ++i) {
-    Witness& seed = seeds.at[i];
-    if (same_place(a, seed, pair)) {
-      if (pair.distance < seed.distance || seed.same_pair(pair)) seed = pair;
-      return;
-    }
-    if (seed.distance > seeds.at[farthest].distance) farthest = i;
-  }
-  if (seeds.count < kSeeds) {
-    seeds.at[seeds.count++] = pair;
-  } else if (pair.distance < seeds.at[farthest].distance) {
-    seeds.at[farthest] = pair;
+  const std::uint32_t found = in_place_of(a, pair, seeds);
+  if (found < seeds.count) {
+    const Witness seed = seeds.at(found);
+    if (pair.distance < seed.distance || seed.same_pair(pair)) put(a, pair, found, seeds);
+  } else if (seeds.count < kSeeds) {
+    put(a, pair, seeds.count++, seeds);
+  } else if (const std::uint32_t farthest = farthest_of(seeds);
+             pair.distance < seeds.distance[farthest]) {
+    put(a, pair, farthest, seeds);
   }
 }
 
 void move_seed(const ImageView& a, std::uint32_t index, const Witness& to, Seeds& seeds) noexcept {
-  if (seeds.at[index].same_pair(to)) {
-    seeds.at[index] = to;
+  if (seeds.at(index).same_pair(to)) {
+    seeds.distance[index] = to.distance;
     return;
   }
-  seeds.at[index] = seeds.at[--seeds.count];
+  put(a, seeds.at(--seeds.count), index, seeds);
   note_seed(a, to, seeds);
 }
 

@@ -24,7 +24,16 @@ struct Seeds {
   std::uint32_t dives = 0;  ///< so far (dive())
   double travel_at = 0;     ///< PairState::travel ...
   double turn_at = 0;       ///< ... and turn to which the distances have been lowered
-  Witness at[kSeeds];       ///< distance: when it was measured, less the motion since
+  // Side by side, so that a pair is held against all of them at once.
+  std::uint32_t a[kSeeds] = {};
+  std::uint32_t b[kSeeds] = {};
+  float distance[kSeeds] = {};   ///< when it was measured, less the motion since
+  float corner[3][kSeeds] = {};  ///< the first one of the triangle of a
+
+  /// @param index  below count
+  [[nodiscard]] Witness at(std::uint32_t index) const noexcept {
+    return {a[index], b[index], distance[index]};
+  }
 };
 
 /// Keeps a pair: instead of the seed in the same place where it is nearer than that, else where

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -40,10 +39,11 @@ Seeds full(const Row& row) {
 }
 
 bool holds(const Seeds& seeds, const Witness& pair) {
-  const Witness* end = seeds.at + seeds.count;
-  return std::any_of(seeds.at, end, [&](const Witness& w) {
-    return w.same_pair(pair) && w.distance == pair.distance;
-  });
+  for (std::uint32_t i = 0; i < seeds.count; ++i) {
+    const Witness seed = seeds.at(i);
+    if (seed.same_pair(pair) && seed.distance == pair.distance) return true;
+  }
+  return false;
 }
 
 TEST(RegionSeeds, places_apart_are_kept_side_by_side) {
@@ -85,7 +85,7 @@ TEST(RegionSeeds, one_that_comes_to_anothers_place_leaves_room) {
   move_seed(row.view, 0, {3, 300, 0.15f}, seeds);  // beside the second, and nearer
   EXPECT_EQ(seeds.count, kSeeds - 1);
   EXPECT_TRUE(holds(seeds, {3, 300, 0.15f}));
-  const Witness stays = seeds.at[4];
+  const Witness stays = seeds.at(4);
   move_seed(row.view, 4, {stays.a, stays.b, 9}, seeds);
   EXPECT_TRUE(holds(seeds, {stays.a, stays.b, 9}));
   EXPECT_EQ(seeds.count, kSeeds - 1);
