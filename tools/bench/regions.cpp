@@ -21,15 +21,16 @@
 // state kept (warm) or forgotten at each tick (cold), with a tolerance of force, and under budgets
 // of time or of work units. Times are of the thread's own processor clock, so that a busy machine
 // shows in the caches only; units are those of the engine (TickResult::queries), counted and not
-// timed. without_contact counts ticks that report none where the exact ones do. force_nrmse is
-// against the exact ticks, of their largest force, over all ticks but the first ten; felt_nrmse is
-// that of the force on display, where force_nrmse sums over regions; settled_* are of the second
-// half of the ticks (settled_us: mean); bound_of_force is the median of the certified error over
-// the largest sum; exact is the share of ticks whose regions' forces, sizes summed, miss no more
-// than a micronewton, and bound_ratio the median of the certified error over what they miss in the
-// others (0: there are none); force_step is the largest change of that sum from tick to tick. Where
-// FCL is installed, its distance of the same meshes (one least distance, OBBRSS) is asked between
-// the exact ticks, pose by pose; of_fcl is our time by its time, summed over the run.
+// timed. without_contact counts ticks that have found none where the exact ones do, denied those of
+// them whose certificate rules one out. force_nrmse is against the exact ticks, of their largest
+// force, over all ticks but the first ten; felt_nrmse is that of the force on display, where
+// force_nrmse sums over regions; settled_* are of the second half of the ticks (settled_us: mean);
+// bound_of_force is the median of the certified error over the largest sum; exact is the share of
+// ticks whose regions' forces, sizes summed, miss no more than a micronewton, and bound_ratio the
+// median of the certified error over what they miss in the others (0: there are none); force_step
+// is the largest change of that sum from tick to tick. Where FCL is installed, its distance of the
+// same meshes (one least distance, OBBRSS) is asked between the exact ticks, pose by pose; of_fcl
+// is our time by its time, summed over the run.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -100,6 +101,7 @@ struct Run {
   std::vector<double> sizes_N;     ///< of the regions' forces, summed
   std::vector<Vec3d> force_N;      ///< summed over regions
   std::vector<Vec3d> felt_N;
+  std::vector<ContactStatus> status;
   double fcl_us = 0;  ///< mean; 0: not asked
 };
 
@@ -147,6 +149,7 @@ Run run(Bench& bench, const std::vector<Pose>& poses, const Plan& plan) {
     out.contacts.push_back(static_cast<double>(r.contacts.size()));
     out.near.push_back(static_cast<double>(r.front_nodes));
     out.units.push_back(static_cast<double>(r.queries));
+    out.status.push_back(r.certificate.contact);
     out.bound_N.push_back(r.certificate.force_bound_N);
     out.sizes_N.push_back(summed_sizes(bench.settings(), r));
     out.force_N.push_back(summed_force(bench.settings(), r));
@@ -158,11 +161,11 @@ Run run(Bench& bench, const std::vector<Pose>& poses, const Plan& plan) {
   return out;
 }
 
-/// Ticks that report no contact where the exact query has one.
-int without_contact(const Run& r, const Run& exact) {
+/// Ticks with this status where the exact query has a contact.
+int in_contact(const Run& r, const Run& exact, ContactStatus status) {
   int count = 0;
-  for (std::size_t i = 0; i < r.contacts.size(); ++i) {
-    count += r.contacts[i] == 0 && exact.contacts[i] > 0 ? 1 : 0;
+  for (std::size_t i = 0; i < r.status.size(); ++i) {
+    count += r.status[i] == status && exact.contacts[i] > 0 ? 1 : 0;
   }
   return count;
 }
@@ -196,13 +199,15 @@ void print_row(const char* scene, double delta_rel, const Plan& plan, const Run&
   const std::vector<double> settled(r.units.begin() + std::ptrdiff_t(r.units.size() / 2),
                                     r.units.end());
   const Tightness tight = tightness(r, exact);
+  const int denied = in_contact(r, exact, ContactStatus::ruled_out);
+  const int without_contact = denied + in_contact(r, exact, ContactStatus::undecided);
   std::printf(
-      "%s,%g,%s,%g,%g,%g,%.1f,%.1f,%.1f,%.1f,%.1f,%.0f,%.0f,%.1f,%.1f,%d,%.4f,%.4f,%.4f,%.4f,%.2f,%"
-      ".1f,%.4f",
+      "%s,%g,%s,%g,%g,%g,%.1f,%.1f,%.1f,%.1f,%.1f,%.0f,%.0f,%.1f,%.1f,"
+      "%d,%d,%.4f,%.4f,%.4f,%.4f,%.2f,%.1f,%.4f",
       scene, delta_rel, plan.cold ? "cold" : "warm", plan.budget_us, double(plan.budget_units),
       plan.tolerance_N, mean(r.us), percentile(r.us, 0.5), percentile(r.us, 0.99),
       mean(r.settled_us), percentile(r.settled_us, 0.5), mean(r.units), mean(settled), mean(r.near),
-      mean(r.contacts), without_contact(r, exact), nrmse(r.force_N, exact.force_N, kStarted),
+      mean(r.contacts), without_contact, denied, nrmse(r.force_N, exact.force_N, kStarted),
       nrmse(r.felt_N, exact.felt_N, kStarted), nrmse(r.felt_N, exact.felt_N, r.felt_N.size() / 2),
       percentile(r.bound_N, 0.5) / peak, tight.exact, tight.ratio, step / peak);
   if (r.fcl_us > 0) {
@@ -509,9 +514,8 @@ int main(int argc, char** argv) {
   std::printf(
       "scene,delta_rel,mode,budget_us,budget_units,tolerance_N,mean_us,median_us,p99_us,"
       "settled_us,settled_median_us,units,settled_units,near_regions,contacts,without_contact,"
-      "force_nrmse,felt_nrmse,settled_felt_nrmse,bound_of_force,exact,bound_ratio,force_step,fcl_"
-      "us,"
-      "of_fcl\n");
+      "denied,force_nrmse,felt_nrmse,settled_felt_nrmse,bound_of_force,exact,bound_ratio,"
+      "force_step,fcl_us,of_fcl\n");
   constexpr struct {
     const char* name;
     void (*measure)(int ticks, const palpate::regions::Kernels& kernels);
