@@ -19,7 +19,7 @@ void put(const ImageView& a, const Witness& pair, std::uint32_t index, Seeds& se
 std::uint32_t in_place_of(const ImageView& a, const Witness& pair, const Seeds& seeds) noexcept {
   const image::RegionTriangle& t = a.region_triangles[pair.a];
   const float closest = kOnePlace * a.regions[t.region].radius;
-  std::uint32_t same[kSeeds];
+  std::uint32_t same[kSeeds];  // of all that there is room for: compared in lanes, not one by one
   for (std::uint32_t i = 0; i < kSeeds; ++i) {
     const float x = seeds.corner[0][i] - t.corners[0];
     const float y = seeds.corner[1][i] - t.corners[1];

@@ -28,7 +28,7 @@ struct Seeds {
   std::uint32_t a[kSeeds] = {};
   std::uint32_t b[kSeeds] = {};
   float distance[kSeeds] = {};   ///< when it was measured, less the motion since
-  float corner[3][kSeeds] = {};  ///< the first one of the triangle of a
+  float corner[3][kSeeds] = {};  ///< x y z of the first one of the triangle of a, in its image
 
   /// @param index  below count
   [[nodiscard]] Witness at(std::uint32_t index) const noexcept {
