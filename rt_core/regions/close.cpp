@@ -185,6 +185,8 @@ void close(Work& work, Active& item, float tolerance) noexcept {
   search_region(work, item, tolerance, false);
 }
 
+void search_for_any(Work& work, Active& item) noexcept { search_region(work, item, 0, true); }
+
 void take_up(Work& work, Active& item, float tolerance) noexcept {
   if (work.may_climb(item)) climb_from_witness(work, item);
   seek(work, item, next_width(work, item, tolerance));

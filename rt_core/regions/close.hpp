@@ -13,8 +13,11 @@ void climb_from_witness(Work& work, Active& item, Beside* out_beside = nullptr) 
 /// then work.truncated. Cost: search().
 void close(Work& work, Active& item, float tolerance) noexcept;
 
-/// The same of a region whose search was left unfinished (unfinished.hpp), from there on and as far
-/// as one step goes, after a climb.
+/// Until any pair nearer than delta is known, or that there is none. Likewise.
+void search_for_any(Work& work, Active& item) noexcept;
+
+/// As close() of a region whose search was left unfinished (unfinished.hpp), from there on and as
+/// far as one step goes, after a climb.
 void take_up(Work& work, Active& item, float tolerance) noexcept;
 
 /// One step towards that under a budget that may end any moment, the cheap ones first: a witness is

@@ -23,7 +23,7 @@ constexpr double kLeastSwept = 128;
 constexpr double kSweptPerRegion = 0.25;
 /// Units for a first contact. Of smooth bodies nearly all are found with 50; between parts of long
 /// triangles, of which many are nearly near enough, with these.
-constexpr double kMostScouted = 400;
+constexpr double kMostScouted = 600;
 
 void limit_sweep(Work& work, std::size_t regions) noexcept {
   const double units = work.units_of_tick();
@@ -49,8 +49,9 @@ bool sweep_if_lost(Work& work, std::uint32_t index) noexcept {
   work.room = Work::kLeastRoom;  // there is much to search, and how the bodies move is not known
   memory.containment[index] = {};
   memory.pursuit.surveyed = 1;  // what a survey had left of another place is none of this one
-  for (double& far_until : memory.scouted.subspan(memory.first_state[index], regions)) {
-    far_until = 0;
+  for (std::uint32_t i = 0; i < regions; ++i) {
+    memory.scouted[memory.first_state[index] + i] = 0;
+    memory.lasting[memory.first_state[index] + i] = 0;
   }
   // However small the budget is for the rest of the tick, it knows where the bodies touch.
   if (work.demand.limited) scout(work, index, kMostScouted);
@@ -64,7 +65,9 @@ bool sweep_if_lost(Work& work, std::uint32_t index) noexcept {
     RegionPairs& kept = memory.kept[at];
     kept.near.count = 0;
     kept.seeds.count = 0;
-    prove(memory.states[at], kept, pair, i, sqrt_of(swept[i]) - kRounding);
+    const float by_sweep = sqrt_of(swept[i]) - kRounding;
+    const float by_scout = float_below(memory.lasting[at] - most_way_of(pair));
+    prove(memory.states[at], kept, pair, i, by_sweep > by_scout ? by_sweep : by_scout);
   }
   return true;
 }

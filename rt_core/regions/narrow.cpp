@@ -53,10 +53,10 @@ constexpr double kLeastGain = 0.006;
 constexpr double kMostTakenUp = 0.5;
 constexpr float kWorthTakingUp = 0.5f;
 
-/// Units for a contact of bodies so fast that they feel none any more. Nearly all are found with
-/// half of these. Where there is none there are many places that are not quite near enough, and
+/// Units for a contact of bodies so fast that they feel none any more. Nearly all are found with a
+/// quarter of these. Where there is none there are many places that are not quite near enough, and
 /// other ones in every tick.
-constexpr double kMostScouted = 100;
+constexpr double kMostScouted = 200;
 
 /// Of equally urgent ones, as after a jump, neighbours are far apart in the order, so that a budget
 /// which ends early has seen something of everywhere.

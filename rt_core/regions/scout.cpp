@@ -3,6 +3,7 @@
 
 #include "rt_core/base/queue.hpp"
 #include "rt_core/convex/simplex.hpp"
+#include "rt_core/regions/close.hpp"
 #include "rt_core/regions/look_into.hpp"
 #include "rt_core/regions/named_box.hpp"
 #include "rt_core/regions/region_triangle.hpp"
@@ -25,11 +26,20 @@ constexpr std::uint32_t kMostWaiting = 128;
 /// A region whose sixteen looks have found nothing near enough is not looked at again before it may
 /// have come near, but for no more than so many delta of motion: looks do not see all of it.
 constexpr float kLasts = 2;
+/// Then it waits to be searched as if it were so many times as far as the nearest that the looks
+/// have met: a search finds what there is, and takes as much as the looks at three regions.
+constexpr float kSearchLater = 1.5f;
+/// Not in ticks of fewer units, which would get to nothing else.
+constexpr double kFewestToSearch = 128;
+/// Looks tell little about a body so small that a cell of b's grid is as wide as so many delta.
+constexpr float kCoarseCell = 8;
 
 struct Place {
-  float apart = 0;  ///< of what is nearest below it, about
-  std::uint32_t node = 0;
+  float apart = 0;         ///< of what is nearest below it, about
+  std::uint32_t node = 0;  ///< with kLooked where it is a region that has been looked at in vain
 };
+constexpr std::uint32_t kLooked = 1u << 31;
+static_assert(image::kMaxRegionNodes <= kLooked);
 
 struct Nearer {
   bool operator()(const Place& x, const Place& y) const noexcept {
@@ -59,6 +69,7 @@ class Scout {
         way_(most_way_of(work.memory.pairs[pair])),
         limit_(static_cast<float>(work.memory.pairs[pair].delta)),
         unit_of_b_(sqrt_of(frame_.scale2_b)),
+        searches_(work.units_left() > kFewestToSearch),
         waiting_(places_, Nearer{}) {}
 
   void run() noexcept {
@@ -67,12 +78,13 @@ class Scout {
     while (!found && !waiting_.empty() && pace_.go_on()) {
       const std::uint32_t node = waiting_.top().node;
       waiting_.pop();
-      found = visit(node);
+      found = (node & kLooked) != 0 ? search_in(node & ~kLooked) : visit(node);
     }
+    if (!found && work_.swept && is_coarse()) search_all();
   }
 
  private:
-  /// @return whether a contact is found; so do visit() and take()
+  /// @return whether a contact is found; so do visit(), search_in() and take()
   bool look_everywhere() noexcept {
     Looks looks;
     regions::look_everywhere(frame_, looks);
@@ -96,16 +108,57 @@ class Scout {
       push_below(node);
       return false;
     }
-    double& far_until = work_.memory.scouted[first_state_ + region];
-    if (way_ < far_until) return false;
+    const std::uint32_t state = first_state_ + region;
+    if (work_.memory.lasting[state] - way_ >= static_cast<double>(limit_)) return false;
+    double& far_until = work_.memory.scouted[state];
+    if (way_ < far_until) {
+      const Witness& known = work_.memory.witnesses[state];
+      search_later(node, known.known() ? known.distance : Work::kClimbReach * limit_);
+      return false;
+    }
     Looks looks;
     look_over(frame_, region, 0, kMostLooks, looks);
     const Witness nearest = nearest_of(work_, frame_, looks);
     if (take(nearest)) return true;
+    search_later(node, nearest.distance);
     const float more = nearest.distance - limit_;
     const float most = kLasts * limit_;
     far_until = way_ + static_cast<double>(more < most ? more : most);
     return false;
+  }
+
+  void search_later(std::uint32_t node, float apart) noexcept {
+    if (!searches_ || waiting_.items().size() == kMostWaiting) return;
+    waiting_.push({kSearchLater * apart, node | kLooked});
+  }
+
+  bool search_in(std::uint32_t node) noexcept {
+    const std::uint32_t region = frame_.a->region_nodes[node].region;
+    const std::uint32_t state = first_state_ + region;
+    if (work_.swept) {
+      const Reach reach{.limit = limit_ + kClosed, .first = true};
+      SearchScratch& scratch = *work_.memory.search;
+      const Bounds found = search(*work_.memory.kernels, frame_, scratch, pace_, region, {}, reach);
+      // Of pairs that it has kept the bound says nothing.
+      if (scratch.near.count == 0) {
+        work_.memory.lasting[state] = static_cast<double>(found.rest) + way_;
+      }
+      return found.best.known() && take(found.best);
+    }
+    const std::uint32_t index = work_.active_of(state);
+    if (index == image::kNone) return false;
+    search_for_any(work_, work_.active()[index]);
+    return work_.is_felt(work_.active()[index]);
+  }
+
+  [[nodiscard]] bool is_coarse() const noexcept {
+    return unit_of_b_ * frame_.b->proximity_grid->cell > kCoarseCell * limit_;
+  }
+
+  void search_all() noexcept {
+    const Witness found =
+        find_any(*work_.memory.kernels, frame_, *work_.memory.search, pace_, limit_);
+    if (found.known()) take(found);
   }
 
   /// What is not near enough by itself may have a neighbour that is: the rest of the tick goes on
@@ -189,6 +242,7 @@ class Scout {
   double way_;
   float limit_;
   float unit_of_b_;
+  bool searches_;  // there are units for it
   Place places_[kMostWaiting];
   MinQueue<Place, Nearer> waiting_;
 };

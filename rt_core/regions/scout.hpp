@@ -12,12 +12,15 @@ namespace palpate::regions {
 /// grid (look.hpp), and of a region sixteen triangles, whose pairs are measured. Of surfaces that
 /// fit each other, one look at each of sixteen regions does; and whether most of those are behind
 /// what is nearest to them makes it suspect that one body is inside the other (containment.hpp).
-/// Regions that have been looked at in vain are passed over in the ticks to come, until they may
-/// have come near: so the scouts of bodies that slide get farther from tick to tick. What is not
-/// quite near enough becomes a witness as well, for the rest of the tick to climb from.
+/// Regions that have been looked at in vain are not looked at again in the ticks to come, until
+/// they may have come near: so the scouts of bodies that slide get farther from tick to tick. Where
+/// there are units for it, the nearest of them are searched instead, until a pair near enough is
+/// known or that there is none, which is kept. After a jump of a body so small that b's grid tells
+/// nothing of it, both trees are. What is not quite near enough becomes a witness as well, for the
+/// rest of the tick to climb from.
 ///
-/// Nothing is proved by that. It takes a third of what a search of both trees takes that ends with
-/// the first pair near enough (docs/TRIED.md, "Any contact first").
+/// Looks prove nothing. They take a third of what a search of both trees takes that ends with the
+/// first pair near enough (docs/TRIED.md, "Any contact first").
 /// @param pair  whose images may have no grid: then nothing is done
 /// @param most_units  to take for it, also where the tick has more
 /// Cost: that and a batch, or all of a that seems to be nearer.

@@ -91,8 +91,9 @@ class Search {
     lower_threshold();
   }
 
-  Bounds run(const image::Region& region) noexcept {
-    visit_root(child_name(region.parent, region.slot));
+  /// @param top  the child of a node of a below which everything is searched
+  Bounds run(std::uint32_t top) noexcept {
+    visit_root(top);
     return finish();
   }
 
@@ -569,10 +570,22 @@ void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratc
 Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
               std::uint32_t region, const Witness& witness, const Reach& reach,
               Remainder* left) noexcept {
-  const Bounds found =
-      Search(kernels, frame, scratch, pace, witness, reach, left).run(frame.a->regions[region]);
+  const image::Region& top = frame.a->regions[region];
+  const Bounds found = Search(kernels, frame, scratch, pace, witness, reach, left)
+                           .run(child_name(top.parent, top.slot));
   scratch.near.sort();
   return found;
+}
+
+Witness find_any(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+                 float limit) noexcept {
+  const Reach reach{.limit = limit, .first = true};
+  const std::uint32_t children = frame.a->region_nodes[0].children;
+  for (std::uint32_t slot = 0; slot < children && pace.go_on(); ++slot) {
+    const Bounds found = Search(kernels, frame, scratch, pace, {}, reach).run(child_name(0, slot));
+    if (found.best.nearer_than(limit)) return found.best;
+  }
+  return {};
 }
 
 Bounds go_on_searching(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,

@@ -195,6 +195,11 @@ Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scr
               std::uint32_t region, const Witness& witness, const Reach& reach,
               Remainder* left = nullptr) noexcept;
 
+/// Any pair of all of a nearer than a limit; none is known where there is none, or the budget has
+/// ended it. Cost: search()
+Witness find_any(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+                 float limit) noexcept;
+
 /// Goes on with a search at the present poses. As search(), but what was seen before is not seen
 /// again, unless it was kept and may be nearer than the best by now: complete, `rest` may be less
 /// by what has come nearer since. The distances in scratch.near of pairs that were kept before are
