@@ -13,7 +13,7 @@ void climb_from_witness(Work& work, Active& item, Beside* out_beside = nullptr) 
 /// then work.truncated. Cost: search().
 void close(Work& work, Active& item, float tolerance) noexcept;
 
-/// Until any pair nearer than delta is known, or that there is none. Likewise.
+/// The same until any pair nearer than delta is known, or that there is none.
 void search_for_any(Work& work, Active& item) noexcept;
 
 /// As close() of a region whose search was left unfinished (unfinished.hpp), from there on and as

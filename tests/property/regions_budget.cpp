@@ -281,6 +281,12 @@ TEST(RegionsBudget, however_little_there_is_after_a_jump_some_contact_is_known) 
   EXPECT_EQ(lost, 0);
 }
 
+/// Turned at random, and brought to this distance from a random direction.
+Pose met_at_random(const bake::Mesh& a, const bake::Mesh& b, double apart, std::mt19937& rng) {
+  const Vec3d direction = random_unit(rng);
+  return approach(a, b, apart, 4, direction, turn(3.0 * random_unit(rng)));
+}
+
 /// Whose flanks are regions of their own, fifty tolerances long.
 struct Gears {
   static constexpr double kDelta = 0.02;
@@ -307,10 +313,7 @@ TEST(RegionsBudget, after_a_jump_needles_are_found_to_touch) {
   constexpr int kJumps = effort(40, 10);
   int lost = 0;
   for (int i = 0; i < kJumps; ++i) {
-    const Vec3d direction = random_unit(rng);
-    const Quat orientation = turn(3.0 * random_unit(rng));
-    const Pose poses[2] = {
-        approach(gears.a.mesh, gears.b.mesh, 0.5 * Gears::kDelta, 4, direction, orientation), {}};
+    const Pose poses[2] = {met_at_random(gears.a.mesh, gears.b.mesh, 0.5 * Gears::kDelta, rng), {}};
     BakedScene scene = gears.scene();
     lost += tick_or_fail(*scene.engine, poses, {.units = 200}).contacts.empty() ? 1 : 0;
   }
@@ -331,10 +334,7 @@ TEST(RegionsBudget, after_a_jump_a_small_tool_finds_where_it_touches_a_large_bod
   constexpr int kJumps = effort(40, 10);
   int lost = 0;
   for (int i = 0; i < kJumps; ++i) {
-    const Vec3d direction = random_unit(rng);
-    const Quat orientation = turn(3.0 * random_unit(rng));
-    const Pose poses[2] = {approach(tool.mesh, large.mesh, 0.5 * kTouch, 4, direction, orientation),
-                           {}};
+    const Pose poses[2] = {met_at_random(tool.mesh, large.mesh, 0.5 * kTouch, rng), {}};
     BakedScene scene({tool.view, large.view}, {{0, 1}},
                      {.engine = EngineKind::regions, .delta_m = kTouch});
     lost += tick_or_fail(*scene.engine, poses, {.units = 300}).contacts.empty() ? 1 : 0;
@@ -352,10 +352,7 @@ TEST(RegionsBudget, held_needles_are_found_to_touch_however_little_a_tick_has) {
   constexpr std::uint64_t kMostUnits = 4'000;  // of all ticks together
   std::uint64_t most = 0;
   for (int i = 0; i < kJumps; ++i) {
-    const Vec3d direction = random_unit(rng);
-    const Quat orientation = turn(3.0 * random_unit(rng));
-    const Pose poses[2] = {
-        approach(gears.a.mesh, gears.b.mesh, 0.5 * Gears::kDelta, 4, direction, orientation), {}};
+    const Pose poses[2] = {met_at_random(gears.a.mesh, gears.b.mesh, 0.5 * Gears::kDelta, rng), {}};
     for (const std::uint64_t units : {25u, 50u, 100u, 200u}) {
       BakedScene scene = gears.scene();
       std::uint64_t spent = units;
