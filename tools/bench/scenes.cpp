@@ -8,11 +8,14 @@
 #include <string_view>
 
 #include "host_bake/mesh/check.hpp"
+#include "host_bake/mesh/read.hpp"
 #include "host_bake/models/models.hpp"
 #include "rt_core/engine.hpp"
 
 namespace palpate::bench {
 namespace {
+
+constexpr double kSlidingGap = 0.4;  // of delta
 
 /// More than any scene needs; for regions, eight grid points for each contact that there can be.
 Limits limits_of(EngineKind engine, const ImageView& tool) {
@@ -47,30 +50,9 @@ bake::Mesh spur_gear(std::uint32_t teeth) {
   return mesh;
 }
 
-Vec3d centre_of(const Body& body) {
-  const double* c = body.view.header->centre_m;
-  return {c[0], c[1], c[2]};
-}
-
 Quat turned(double x, double y, double z) {
   const double n = std::sqrt(1 + x * x + y * y + z * z);
   return {1 / n, x / n, y / n, z / n};
-}
-
-/// Distance at a pose, or `most`.
-double distance_at(Bench& wide, const Pose& pose, double most) {
-  const TickResult r = wide.tick_at(pose);
-  return r.contacts.empty() ? most : r.min_distance_m;
-}
-
-/// Moves against `out` until 0.4 delta is left.
-Pose brought_near(Bench& wide, Pose pose, Vec3d out, double delta, double reach) {
-  for (int k = 0; k < 60; ++k) {
-    const double step = distance_at(wide, pose, reach) - 0.4 * delta;
-    pose.position_m -= step * out;
-    if (std::abs(step) < 1e-3 * delta) break;
-  }
-  return pose;
 }
 
 Pose sliding(Bench& wide, const Body& a, const Body& b, double delta, double reach, int i) {
@@ -80,7 +62,7 @@ Pose sliding(Bench& wide, const Body& a, const Body& b, double delta, double rea
   Pose pose{{}, turned(0.3 * std::sin(0.5 * u), 0.5 * u, 0.2 * u)};
   const double apart = a.view.header->radius_m + b.view.header->radius_m;
   pose.position_m = centre_of(b) + apart * out - rotation(pose.orientation) * centre_of(a);
-  return brought_near(wide, pose, out, delta, reach);
+  return brought_near(wide, pose, out, kSlidingGap * delta, reach);
 }
 
 /// Half a turn about y, small turns and shifts, then down.
@@ -91,7 +73,7 @@ Pose upon_tips(Bench& wide, const Body& a, const Body& b, double delta, double r
   Pose pose{{}, {-small.y, -small.z, small.w, small.x}};
   pose.position_m = centre_of(b) - rotation(pose.orientation) * centre_of(a) +
                     radius * Vec3d{0.15 * std::sin(u), 0.15 * std::sin(1.7 * u + 1), 1.2};
-  return brought_near(wide, pose, {0, 0, 1}, delta, reach);
+  return brought_near(wide, pose, {0, 0, 1}, kSlidingGap * delta, reach);
 }
 
 /// Small turns where it lies, pressed in a turning direction until about 0.1 delta is left.
@@ -119,12 +101,15 @@ Pose pressed(Bench& wide, const Body& a, double delta, int i) {
 bake::Mesh mesh_of(std::string_view model, std::size_t triangles) {
   if (model == "gear_60") return spur_gear(60);
   if (model == "gear_50") return spur_gear(50);
+  if (model.find('.') != std::string_view::npos) return bake::read_mesh(model).mesh;
   return bake::make_model(model, triangles);
 }
 
 Body::Body(const char* model, double delta_rel, bake::ForEngine engine, std::size_t triangles,
-           double max_deviation) {
-  const bake::Mesh mesh = mesh_of(model, triangles);
+           double max_deviation)
+    : Body(mesh_of(model, triangles), delta_rel, engine, max_deviation) {}
+
+Body::Body(const bake::Mesh& mesh, double delta_rel, bake::ForEngine engine, double max_deviation) {
   bake::BakeOptions options;
   options.engine = engine;
   options.delta_rel = delta_rel;
@@ -133,6 +118,11 @@ Body::Body(const char* model, double delta_rel, bake::ForEngine engine, std::siz
   image =
       std::make_unique<bake::AlignedCopy>(bake::bake(mesh, bake::check(mesh), options, {}, report));
   if (validate(image->bytes(), view) != Status::ok) std::abort();
+}
+
+Vec3d centre_of(const Body& body) {
+  const double* c = body.view.header->centre_m;
+  return {c[0], c[1], c[2]};
 }
 
 Bench::Bench(const Body& a, const Body& b, const Settings& settings)
@@ -186,6 +176,20 @@ std::vector<Pose> motion(const SceneName& scene, const Body& a, const Body& b, d
                                         : sliding(wide, a, b, delta_m, reach, i));
   }
   return poses;
+}
+
+double distance_at(Bench& wide, const Pose& pose, double most) {
+  const TickResult r = wide.tick_at(pose);
+  return r.contacts.empty() ? most : r.min_distance_m;
+}
+
+Pose brought_near(Bench& wide, Pose pose, Vec3d out, double gap_m, double reach_m) {
+  for (int k = 0; k < 60; ++k) {
+    const double step = distance_at(wide, pose, reach_m) - gap_m;
+    pose.position_m -= step * out;
+    if (std::abs(step) < 2.5e-3 * gap_m) break;
+  }
+  return pose;
 }
 
 double nrmse(const std::vector<Vec3d>& forces, const std::vector<Vec3d>& truth, std::size_t first) {

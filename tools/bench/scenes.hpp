@@ -25,8 +25,8 @@ struct SceneName {
   bool upside_down = false;  ///< a is turned by half a turn: tips of teeth meet tips
 };
 
-/// A model of `palpate make-model`, or gear_60 or gear_50, spur gears of so many teeth in needles:
-/// as it is made.
+/// A model of `palpate make-model`, as it is made; gear_60 or gear_50, spur gears of so many teeth
+/// in needles; or, where the name has a dot, a mesh file.
 bake::Mesh mesh_of(std::string_view model, std::size_t triangles = 0);
 
 /// A model, baked in memory.
@@ -35,9 +35,12 @@ struct Body {
   /// @param max_deviation  detail left out, relative to the radius
   Body(const char* model, double delta_rel, bake::ForEngine engine, std::size_t triangles = 0,
        double max_deviation = 0);
+  Body(const bake::Mesh& mesh, double delta_rel, bake::ForEngine engine, double max_deviation = 0);
   std::unique_ptr<bake::AlignedCopy> image;
   ImageView view;
 };
+
+Vec3d centre_of(const Body& body);
 
 /// An engine over two bodies that can forget all it knows.
 class Bench {
@@ -76,6 +79,13 @@ class Bench {
 /// at a distance of about 0.4 delta.
 std::vector<Pose> motion(const SceneName& scene, const Body& a, const Body& b, double delta_m,
                          int ticks);
+
+/// The least distance there, or `most`.
+/// @param wide  an exact engine whose delta is no less than `most`
+double distance_at(Bench& wide, const Pose& pose, double most);
+
+/// Moves against `out`, a unit vector, until `gap_m` is left.
+Pose brought_near(Bench& wide, Pose pose, Vec3d out, double gap_m, double reach_m);
 
 /// Root mean square of the differences over that of their largest truth, from tick `first` on.
 double nrmse(const std::vector<Vec3d>& forces, const std::vector<Vec3d>& truth, std::size_t first);
