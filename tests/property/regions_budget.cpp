@@ -367,11 +367,35 @@ TEST(RegionsBudget, held_needles_are_found_to_touch_however_little_a_tick_has) {
   RecordProperty("units", std::to_string(most));
 }
 
+/// The least distance of a and b there, or delta.
+double distance_at(BakedScene& exact, const Pose& pose) {
+  const Pose poses[2] = {pose, {}};
+  const TickResult r = tick_or_fail(*exact.engine, poses);
+  return r.contacts.empty() ? Gears::kDelta : r.min_distance_m;
+}
+
+/// One gear upon another, and how it goes on from there.
+struct Slide {
+  Slide(BakedScene& exact, std::mt19937& rng)
+      : down(random_unit(rng)),
+        axis(random_unit(rng)),
+        pose{2.5 * down, turn(3.0 * random_unit(rng))} {
+    while (distance_at(exact, pose) > 0.4 * Gears::kDelta) {
+      pose.position_m -= (distance_at(exact, pose) - 0.3 * Gears::kDelta) * down;
+    }
+  }
+  void go_on(double way) {
+    pose.position_m += way * cross(down, axis);
+    pose.orientation = turn(way * axis) * pose.orientation;
+  }
+  Vec3d down, axis;
+  Pose pose;
+};
+
 /// A scout of a hundred units does not find where gears touch, and the next one would look at the
 /// same places again: until they do, those that have been looked at in vain are passed over, and
 /// what was nearly near enough is climbed from.
 TEST(RegionsBudget, sliding_needles_are_found_to_touch_within_some_ticks) {
-  constexpr double kTouch = Gears::kDelta;
   const Gears gears(60, 50);
   std::mt19937 rng(5);
   constexpr int kSlides = effort(30, 6);
@@ -379,32 +403,63 @@ TEST(RegionsBudget, sliding_needles_are_found_to_touch_within_some_ticks) {
   for (int i = 0; i < kSlides; ++i) {
     BakedScene exact = gears.scene();
     BakedScene budgeted = gears.scene();
-    const Vec3d direction = random_unit(rng);
-    const Vec3d axis = random_unit(rng);
-    Pose pose{2.5 * direction, turn(3.0 * random_unit(rng))};
-    const auto distance = [&] {
-      const Pose poses[2] = {pose, {}};
-      const TickResult r = tick_or_fail(*exact.engine, poses);
-      return r.contacts.empty() ? kTouch : r.min_distance_m;
-    };
-    while (distance() > 0.4 * kTouch) {
-      pose.position_m -= (distance() - 0.3 * kTouch) * direction;
-    }
+    Slide slide(exact, rng);
     for (int t = 0; t < 20; ++t) {
-      if (distance() < kTouch) {
+      if (distance_at(exact, slide.pose) < Gears::kDelta) {
         ++touching;
-        const Pose poses[2] = {pose, {}};
+        const Pose poses[2] = {slide.pose, {}};
         const TickResult r = tick_or_fail(*budgeted.engine, poses, {.units = 100});
         lost += r.contacts.empty() ? 1 : 0;
       }
-      pose.position_m += 0.2 * kTouch * cross(direction, axis);
-      pose.orientation = turn(0.2 * kTouch * axis) * pose.orientation;
+      slide.go_on(0.2 * Gears::kDelta);
     }
   }
   RecordProperty("touching", touching);
   RecordProperty("lost", lost);
   EXPECT_GT(touching, 8 * kSlides);
   EXPECT_LT(7 * lost, touching);
+}
+
+/// Of what comes near, a tenth of delta a tick, a small budget may miss the first ticks, in which
+/// there is hardly a force; what has been felt is not lost again.
+TEST(RegionsBudget, needles_that_come_near_are_felt_before_they_are_deep_and_from_then_on) {
+  constexpr double kStep = 0.1 * Gears::kDelta;
+  constexpr double kDeep = 0.3;
+  constexpr int kSlides = effort(30, 3);
+  const Gears gears(60, 50);
+  std::mt19937 rng(5);
+  int touching = 0, late = 0, dropped = 0;
+  double deepest = 0;
+  for (int i = 0; i < kSlides; ++i) {
+    BakedScene exact = gears.scene();
+    BakedScene budgeted = gears.scene();
+    Slide slide(exact, rng);
+    slide.pose.position_m += 60 * kStep * slide.down;
+    bool felt = false;
+    for (int t = 0; t < 160; ++t) {
+      const Pose poses[2] = {slide.pose, {}};
+      const double depth = 1 - distance_at(exact, slide.pose) / Gears::kDelta;
+      const bool felt_before = felt;
+      felt = !tick_or_fail(*budgeted.engine, poses, {.units = 200}).contacts.empty();
+      if (depth > 0) {
+        ++touching;
+        late += felt ? 0 : 1;
+        dropped += felt_before && !felt ? 1 : 0;
+        deepest = felt ? deepest : std::max(deepest, depth);
+      }
+      if (t < 60) {
+        slide.pose.position_m -= kStep * slide.down;
+      } else {
+        slide.go_on(kStep);
+      }
+    }
+  }
+  RecordProperty("touching", touching);
+  RecordProperty("late", late);
+  RecordProperty("deepest", std::to_string(deepest));
+  EXPECT_GT(touching, 40 * kSlides);
+  EXPECT_EQ(dropped, 0);
+  EXPECT_LT(deepest, kDeep);
 }
 
 /// Jaws pass each other by more than delta a tick and meet in places that have not touched before.
