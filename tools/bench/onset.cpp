@@ -65,12 +65,11 @@ struct Pair {
   double radius_m, delta_m;
 };
 
-double inner(const Quat& q, const Quat& p) { return q.w * p.w + q.x * p.x + q.y * p.y + q.z * p.z; }
-
 Quat random_turn(bake::Random& random) {
   while (true) {
-    Quat q{random.signed_unit(), random.signed_unit(), random.signed_unit(), random.signed_unit()};
-    const double length2 = inner(q, q);
+    const Quat q{random.signed_unit(), random.signed_unit(), random.signed_unit(),
+                 random.signed_unit()};
+    const double length2 = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
     if (length2 > 1 || length2 < 1e-3) continue;
     const double s = 1 / std::sqrt(length2);
     return {s * q.w, s * q.x, s * q.y, s * q.z};
@@ -116,8 +115,8 @@ std::vector<Pose> slide(const Pair& pair, Bench& wide, const Motion& motion, bak
 
 struct Count {
   std::uint64_t touching = 0, missed = 0, dropped = 0, denied = 0;
-  std::vector<int> late;  ///< ticks in a row
-  double deepest = 0;     ///< of delta
+  std::vector<double> late;  ///< ticks in a row
+  double deepest = 0;        ///< of delta
 
   void add(const Count& other) {
     touching += other.touching;
@@ -174,20 +173,14 @@ Count count(Bench& bench, const std::vector<Pose>& poses, const std::vector<doub
   return out;
 }
 
-int at_share(const std::vector<int>& sorted, double share) {
-  if (sorted.empty()) return 0;
-  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
-}
-
-void print(const Asked& asked, const Motion& motion, std::uint64_t units, Count found) {
-  std::sort(found.late.begin(), found.late.end());
+void print(const Asked& asked, const Motion& motion, std::uint64_t units, const Count& found) {
   std::printf(
-      "%s,%s,%g,%s,%llu,%llu,%llu,%llu,%llu,%zu,%d,%d,%d,%.2f\n", asked.a.c_str(), asked.b.c_str(),
-      asked.delta_rel, motion.name, static_cast<unsigned long long>(units),
+      "%s,%s,%g,%s,%llu,%llu,%llu,%llu,%llu,%zu,%.0f,%.0f,%.0f,%.2f\n", asked.a.c_str(),
+      asked.b.c_str(), asked.delta_rel, motion.name, static_cast<unsigned long long>(units),
       static_cast<unsigned long long>(found.touching),
       static_cast<unsigned long long>(found.missed), static_cast<unsigned long long>(found.dropped),
-      static_cast<unsigned long long>(found.denied), found.late.size(), at_share(found.late, 0.5),
-      at_share(found.late, 0.9), at_share(found.late, 1), found.deepest);
+      static_cast<unsigned long long>(found.denied), found.late.size(), percentile(found.late, 0.5),
+      percentile(found.late, 0.9), percentile(found.late, 1), found.deepest);
   std::fflush(stdout);
 }
 

@@ -90,11 +90,6 @@ double summed_sizes(const Settings& settings, const TickResult& r) {
   return sum;
 }
 
-double percentile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
 struct Run {
   std::vector<double> us, contacts, near, units, bound_N;
   std::vector<double> settled_us;  ///< of the second half of the ticks
@@ -184,8 +179,7 @@ Tightness tightness(const Run& r, const Run& exact) {
     if (missing_N > kNothing_N) ratios.push_back(r.bound_N[i] / missing_N);
   }
   const auto counted = static_cast<double>(r.bound_N.size() - kStarted);
-  return {1 - static_cast<double>(ratios.size()) / counted,
-          ratios.empty() ? 0 : percentile(ratios, 0.5)};
+  return {1 - static_cast<double>(ratios.size()) / counted, percentile(ratios, 0.5)};
 }
 
 void print_row(const char* scene, double delta_rel, const Plan& plan, const Run& r,

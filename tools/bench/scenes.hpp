@@ -92,4 +92,7 @@ double nrmse(const std::vector<Vec3d>& forces, const std::vector<Vec3d>& truth, 
 
 double mean(const std::vector<double>& values);
 
+/// The value that this share of them are no larger than; 0 where there are none.
+double percentile(std::vector<double> values, double share);
+
 }  // namespace palpate::bench
