@@ -126,6 +126,7 @@ Found find_by_regions(Engine& engine, Meter& meter) noexcept {
             .certificate = certify(found, found.maybe_apart ? s.delta_m : found.min_distance_m,
                                    s.delta_m, least_error_m(engine.states))};
   out.certificate.force_bound_N = s.stiffness_N_per_m * found.open_m;
+  out.certificate.on_reserve = found.on_reserve;
   return out;
 }
 

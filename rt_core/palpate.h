@@ -113,6 +113,9 @@ typedef struct palpate_budget {
   uint64_t (*clock_ns)(void* context);
   void* clock_context;
   uint64_t deadline_ns;
+  /* More of each, for a tick of PALPATE_REGIONS that by then feels nothing of two bodies and cannot
+   * rule out that they touch; 0: none, UINT64_MAX: until that is answered (palpate_rt.hpp). */
+  uint64_t reserve_units, reserve_ns;
 } palpate_budget;
 
 typedef struct palpate_contact {
@@ -135,7 +138,7 @@ typedef struct palpate_result {
   uint32_t contacts, clusters;
   uint32_t truncated_by_time, truncated_by_units, truncated_by_memory, iteration_cap_met;
   uint32_t contact; /* PALPATE_CONTACT_... */
-  uint32_t reserved;
+  uint32_t on_reserve;
 } palpate_result;
 
 /* One contact query and its wrench. poses: [bodies]. */

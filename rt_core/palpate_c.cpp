@@ -113,7 +113,7 @@ void put(const TickResult& from, palpate_result& to) noexcept {
   to.truncated_by_memory = from.certificate.truncated_by_memory ? 1 : 0;
   to.iteration_cap_met = from.certificate.iteration_cap_met ? 1 : 0;
   to.contact = static_cast<std::uint32_t>(from.certificate.contact);
-  to.reserved = 0;
+  to.on_reserve = from.certificate.on_reserve ? 1 : 0;
 }
 
 Pose pose_of(const palpate_pose& from) noexcept {
@@ -171,7 +171,9 @@ Budget budget_of(const palpate_budget& from) noexcept {
   return {.units = from.units,
           .clock_ns = from.clock_ns,
           .clock_context = from.clock_context,
-          .deadline_ns = from.deadline_ns};
+          .deadline_ns = from.deadline_ns,
+          .reserve_units = from.reserve_units,
+          .reserve_ns = from.reserve_ns};
 }
 
 }  // namespace

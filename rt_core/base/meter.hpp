@@ -67,9 +67,7 @@ class Meter {
   /// How many contacts there is time for in the tail, of which it is left half of the budget; below
   /// 0 where there is none.
   [[nodiscard]] double contacts_affordable() const noexcept {
-    if (budget_.clock_ns == nullptr || budget_.deadline_ns == kUnlimited) {
-      return std::numeric_limits<double>::infinity();
-    }
+    if (!limited_in_time()) return std::numeric_limits<double>::infinity();
     return tail_.contacts_in(half_ns());
   }
 
@@ -96,6 +94,21 @@ class Meter {
     if (budget_.units == kUnlimited) return;
     const std::uint64_t half = budget_.units / 2;
     stop_units_ = budget_.units - (units < half ? units : half);
+  }
+
+  /// What the budget has in reserve is to be had from here on, and what was held back or set aside
+  /// as well. Once.
+  /// @return false where there is none
+  bool draw_on_reserve() noexcept {
+    const bool more_units = budget_.units != kUnlimited && budget_.reserve_units > 0;
+    const bool more_time = limited_in_time() && budget_.reserve_ns > 0;
+    if (!more_units && !more_time) return false;
+    budget_.units = sum_of(budget_.units, budget_.reserve_units);
+    budget_.deadline_ns = sum_of(budget_.deadline_ns, budget_.reserve_ns);
+    budget_.reserve_units = budget_.reserve_ns = 0;
+    if (more_time) leave_for_tail(contacts_);
+    release();
+    return true;
   }
 
   /// Units left, as far as a counter of 32 bits tells.
@@ -131,8 +144,7 @@ class Meter {
   [[nodiscard]] std::uint64_t refined_ns() const noexcept { return tail_start_ns_ - start_ns_; }
   /// Can the budget end the tick at all?
   [[nodiscard]] bool limited() const noexcept {
-    const bool in_time = budget_.clock_ns != nullptr && budget_.deadline_ns != kUnlimited;
-    return in_time || budget_.units != kUnlimited;
+    return limited_in_time() || budget_.units != kUnlimited;
   }
   [[nodiscard]] bool out_of_units() const noexcept { return used_ >= stop_units_; }
   [[nodiscard]] bool out_of_time() const noexcept {
@@ -156,6 +168,14 @@ class Meter {
 
  private:
   static constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
+
+  [[nodiscard]] bool limited_in_time() const noexcept {
+    return budget_.clock_ns != nullptr && budget_.deadline_ns != kUnlimited;
+  }
+
+  static std::uint64_t sum_of(std::uint64_t limit, std::uint64_t more) noexcept {
+    return more < kUnlimited - limit ? limit + more : kUnlimited;
+  }
 
   [[nodiscard]] std::uint64_t half_ns() const noexcept {
     return budget_.deadline_ns > start_ns_ ? (budget_.deadline_ns - start_ns_) / 2 : 0;

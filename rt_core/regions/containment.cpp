@@ -253,7 +253,7 @@ void settle_side(Work& work, std::uint32_t index) noexcept {
     ask_first(kept, pair, false);
     kept.doubtful = kept.unseen = kept.unanswered = false;
   }
-  if (work.demand.limited && !work.swept) work.limit_to(kMostAsked);
+  if (work.demand.limited && !work.swept && !work.result.on_reserve) work.limit_to(kMostAsked);
   const Component before = kept.contained;
   const Side side = answer(work, kept, pair);
   work.pace.no_limit();
@@ -394,6 +394,16 @@ void settle_suspected_sides(Work& work) noexcept {
   for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
     const Containment& kept = work.memory.containment[i];
     if (kept.unseen && kept.suspected && !is_near(work, i)) settle_unseen(work, i);
+  }
+}
+
+void settle_open_sides(Work& work) noexcept {
+  constexpr int kQuestions = 2;  // what was asked in a tick before, and of the present poses
+  for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
+    const Containment& kept = work.memory.containment[i];
+    if (!kept.is_open() || is_near(work, i)) continue;
+    for (int k = 0; k < kQuestions && kept.is_open(); ++k) settle_side(work, i);
+    look_for_way_out(work, i);
   }
 }
 

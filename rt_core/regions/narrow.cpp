@@ -102,20 +102,10 @@ class Narrowing {
   /// Fast bodies leave their contacts behind between two ticks.
   void scout_where_none_is_felt() noexcept {
     for (std::uint32_t i = 0; i < work_.memory.pairs.size() && work_.pace.go_on(); ++i) {
-      if (margin_of(work_.memory.pairs[i]) > 0 || !may_touch_unfelt(i)) continue;
+      if (margin_of(work_.memory.pairs[i]) > 0 || !work_.may_touch_unfelt(i)) continue;
       scout(work_, i, kMostScouted);
     }
     work_.truncated = !work_.pace.go_on();
-  }
-
-  bool may_touch_unfelt(std::uint32_t pair) const noexcept {
-    bool open = false;
-    for (const Active& item : work_.active()) {
-      if (item.pair != pair) continue;
-      if (work_.is_contact(item)) return false;
-      open |= item.width > kClosed;
-    }
-    return open;
   }
 
   /// An interval may stay open by this much, but not down to zero: what crosses has a depth, of

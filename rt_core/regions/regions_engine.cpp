@@ -5,6 +5,7 @@
 #include "rt_core/regions/gather.hpp"
 #include "rt_core/regions/narrow.hpp"
 #include "rt_core/regions/report.hpp"
+#include "rt_core/regions/reserve.hpp"
 #include "rt_core/regions/work.hpp"
 
 namespace palpate::regions {
@@ -12,8 +13,8 @@ namespace {
 
 /// Everything up to here was refinement; what it left to the tail is to be had now.
 void end_refinement(Work& work) noexcept {
-  work.result.truncated_by_units = work.truncated && work.pace.units_ended();
-  work.result.truncated_by_time = work.truncated && work.pace.time_ended();
+  work.result.truncated_by_units |= work.truncated && work.pace.units_ended();
+  work.result.truncated_by_time |= work.truncated && work.pace.time_ended();
   work.meter.begin_tail();
   const std::uint64_t used = work.pace.used();
   if (used > 0) palpate::follow(work.memory.pursuit.unit_ns, work.meter.refined_ns() / used);
@@ -42,6 +43,7 @@ QueryResult query(QueryMemory& memory, const Demand& demand, Meter& meter, Tally
   settle_sides(work);
   tally.lap(Stage::start, meter);
   narrow(work);
+  decide_on_reserve(work);
   find_ways_out(work);
   end_refinement(work);
   tally.lap(Stage::refine, meter.refined_ns());

@@ -104,6 +104,7 @@ struct QueryResult {
   bool truncated_by_units = false;
   bool truncated_by_memory = false;
   bool iteration_cap_met = false;
+  bool on_reserve = false;  ///< what the budget has in reserve was drawn on
 };
 
 /// How far a query goes.

@@ -135,6 +135,11 @@ class Scout {
   bool search_in(std::uint32_t node) noexcept {
     const std::uint32_t region = frame_.a->region_nodes[node].region;
     const std::uint32_t state = first_state_ + region;
+    const std::uint32_t index = work_.active_of(state);
+    if (index != image::kNone) {
+      search_for_any(work_, work_.active()[index]);
+      return work_.is_felt(work_.active()[index]);
+    }
     if (work_.swept) {
       const Reach reach{.limit = limit_ + kClosed, .first = true};
       SearchScratch& scratch = *work_.memory.search;
@@ -145,10 +150,7 @@ class Scout {
       }
       return found.best.known() && take(found.best);
     }
-    const std::uint32_t index = work_.active_of(state);
-    if (index == image::kNone) return false;
-    search_for_any(work_, work_.active()[index]);
-    return work_.is_felt(work_.active()[index]);
+    return false;
   }
 
   [[nodiscard]] bool is_coarse() const noexcept {
@@ -168,9 +170,10 @@ class Scout {
     if (!pair.nearer_than(Work::kClimbReach * limit_)) return false;
     const std::uint32_t state = first_state_ + frame_.a->region_triangles[pair.a].region;
     Witness& known = work_.memory.witnesses[state];
-    if (!work_.swept && known.nearer_than(pair.distance)) return false;
-    known = pair;
     const std::uint32_t index = work_.active_of(state);
+    const bool of_before = work_.swept && index == image::kNone;
+    if (!of_before && known.nearer_than(pair.distance)) return false;
+    known = pair;
     if (index != image::kNone) {
       work_.active()[index].climbed = false;
       work_.widen(work_.active()[index]);

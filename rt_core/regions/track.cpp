@@ -11,18 +11,9 @@ namespace {
 /// Of what the tick has left: the rest is for what is new.
 constexpr double kMostTracked = 0.5;
 
-struct Nearer {
-  const Work& work;
-  bool operator()(std::uint32_t a, std::uint32_t b) const noexcept {
-    const float of_a = work.witness_of(work.active()[a]).distance;
-    const float of_b = work.witness_of(work.active()[b]).distance;
-    return of_a < of_b || (of_a == of_b && a < b);
-  }
-};
-
 class Tracking {
  public:
-  explicit Tracking(Work& work) noexcept : work_(work), sliding_(work.memory.queue, Nearer{work}) {}
+  explicit Tracking(Work& work) noexcept : work_(work), sliding_(work.memory.queue, NearerWitness{work}) {}
 
   void run() noexcept {
     for (std::uint32_t i = 0; i < work_.count; ++i) {
@@ -64,7 +55,7 @@ class Tracking {
   }
 
   Work& work_;
-  MinQueue<std::uint32_t, Nearer> sliding_;  // of active regions
+  MinQueue<std::uint32_t, NearerWitness> sliding_;  // of active regions
 };
 
 }  // namespace

@@ -40,6 +40,16 @@ std::uint32_t Work::active_of(std::uint32_t state) const noexcept {
   return first < count && in_order[first].state == state ? first : image::kNone;
 }
 
+bool Work::may_touch_unfelt(std::uint32_t pair) const noexcept {
+  bool open = false;
+  for (const Active& item : active()) {
+    if (item.pair != pair) continue;
+    if (is_contact(item)) return false;
+    open |= item.width > kClosed;
+  }
+  return open;
+}
+
 void Work::leave_for_report(std::uint64_t felt, std::uint64_t crossing) noexcept {
   const double listing = static_cast<double>(crossing) * memory.pursuit.listing_units;
   meter.expect_contacts(tail_contacts(felt, crossing));

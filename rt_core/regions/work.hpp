@@ -66,6 +66,8 @@ struct Work {
   [[nodiscard]] bool is_contact(const Active& item) const noexcept {
     return is_felt(item) && is_present(item);
   }
+  /// Whether nothing of two bodies is felt, but it is not proved that nothing is there. O(active)
+  [[nodiscard]] bool may_touch_unfelt(std::uint32_t pair) const noexcept;
   [[nodiscard]] double width_m(const Active& item) const noexcept {
     return static_cast<double>(item.width) * pair_of(item).unit_m;
   }
@@ -135,6 +137,16 @@ struct Work {
   bool truncated = false;      ///< the budget ended refinement
   QueryResult result{.min_distance_m = std::numeric_limits<double>::infinity(),
                      .unresolved_lower_m = std::numeric_limits<double>::infinity()};
+};
+
+/// Of active regions, the one whose witness is nearest first.
+struct NearerWitness {
+  const Work& work;
+  bool operator()(std::uint32_t a, std::uint32_t b) const noexcept {
+    const float of_a = work.witness_of(work.active()[a]).distance;
+    const float of_b = work.witness_of(work.active()[b]).distance;
+    return of_a < of_b || (of_a == of_b && a < b);
+  }
 };
 
 }  // namespace palpate::regions

@@ -2,8 +2,9 @@
 // How soon a contact is felt under a budget of work units, of bodies that slide, come near and
 // leap.
 //
-//   bench_onset SLIDES UNITS[,UNITS...] [A B DELTA]...
+//   bench_onset SLIDES BUDGET[,BUDGET...] [A B DELTA]...
 //
+// BUDGET: units, or units+reserve (Budget::reserve_units).
 // A, B: models of `palpate make-model`, gear_60 and gear_50 (tools/bench/scenes.hpp), or mesh
 // files; DELTA: contact tolerance, relative to the smaller radius. Default: jaws, golf balls, a
 // screw and a nut, gears of needles. Each pair is brought together from random sides in random
@@ -14,8 +15,9 @@
 // (touching); of those, ticks without a contact (missed); those among them whose tick before had
 // one (dropped), and whose certificates rule out the contact that is there (denied; must be 0);
 // how often misses follow each other until a contact is felt (late), for how many ticks, median,
-// 90 % and most; and how deep the deepest that is missed is, as a share of delta. Units are exact:
-// the same figures on every machine.
+// 90 % and most; how deep the deepest that is missed is, as a share of delta; and of all ticks, how
+// many drew on the reserve (drawn), those of them that do not touch (in vain), and the most units
+// that a tick took. Units are exact: the same figures on every machine.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -117,6 +119,7 @@ struct Count {
   std::uint64_t touching = 0, missed = 0, dropped = 0, denied = 0;
   std::vector<double> late;  ///< ticks in a row
   double deepest = 0;        ///< of delta
+  std::uint64_t ticks = 0, drawn = 0, in_vain = 0, most_units = 0;
 
   void add(const Count& other) {
     touching += other.touching;
@@ -125,6 +128,10 @@ struct Count {
     denied += other.denied;
     late.insert(late.end(), other.late.begin(), other.late.end());
     deepest = std::max(deepest, other.deepest);
+    ticks += other.ticks;
+    drawn += other.drawn;
+    in_vain += other.in_vain;
+    most_units = std::max(most_units, other.most_units);
   }
 };
 
@@ -140,7 +147,7 @@ std::vector<double> depths_at(Bench& exact, const std::vector<Pose>& poses) {
 }
 
 Count count(Bench& bench, const std::vector<Pose>& poses, const std::vector<double>& depths,
-            bool cold, std::uint64_t units) {
+            bool cold, const Budget& budget) {
   Count out;
   int in_row = 0;
   bool felt_before = false;
@@ -154,9 +161,14 @@ Count count(Bench& bench, const std::vector<Pose>& poses, const std::vector<doub
       bench.forget();
       end_row();
     }
-    const TickResult r = bench.tick_at(poses[i], {.units = units});
+    const TickResult r = bench.tick_at(poses[i], budget);
     const bool touches = depths[i] > 0;
     const bool felt = !r.contacts.empty();
+    const bool drew = r.certificate.on_reserve;
+    ++out.ticks;
+    out.drawn += drew ? 1u : 0u;
+    out.in_vain += drew && !touches ? 1u : 0u;
+    out.most_units = std::max(out.most_units, r.certificate.units_used);
     out.touching += touches ? 1u : 0u;
     if (touches && !felt) {
       ++in_row;
@@ -173,20 +185,21 @@ Count count(Bench& bench, const std::vector<Pose>& poses, const std::vector<doub
   return out;
 }
 
-void print(const Asked& asked, const Motion& motion, std::uint64_t units, const Count& found) {
-  std::printf(
-      "%s,%s,%g,%s,%llu,%llu,%llu,%llu,%llu,%zu,%.0f,%.0f,%.0f,%.2f\n", asked.a.c_str(),
-      asked.b.c_str(), asked.delta_rel, motion.name, static_cast<unsigned long long>(units),
-      static_cast<unsigned long long>(found.touching),
-      static_cast<unsigned long long>(found.missed), static_cast<unsigned long long>(found.dropped),
-      static_cast<unsigned long long>(found.denied), found.late.size(), percentile(found.late, 0.5),
-      percentile(found.late, 0.9), percentile(found.late, 1), found.deepest);
+void print(const Asked& asked, const Motion& motion, const Budget& budget, const Count& found) {
+  const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
+  std::printf("%s,%s,%g,%s,%llu,%llu,%llu,%llu,%llu,%llu,%zu,%.0f,%.0f,%.0f,%.2f,%llu,%llu,%llu,%llu\n",
+              asked.a.c_str(), asked.b.c_str(), asked.delta_rel, motion.name, number(budget.units),
+              number(budget.reserve_units), number(found.touching), number(found.missed),
+              number(found.dropped), number(found.denied), found.late.size(),
+              percentile(found.late, 0.5), percentile(found.late, 0.9), percentile(found.late, 1),
+              found.deepest, number(found.ticks), number(found.drawn), number(found.in_vain),
+              number(found.most_units));
   std::fflush(stdout);
 }
 
 /// By budget.
 std::vector<Count> measure(const Pair& pair, const Motion& motion, int slides,
-                           const std::vector<std::uint64_t>& budgets) {
+                           const std::vector<Budget>& budgets) {
   Bench wide(pair.a, pair.b, pair.settings(kReach * pair.radius_m));
   Bench exact(pair.a, pair.b, pair.settings(pair.delta_m));
   Bench bench(pair.a, pair.b, pair.settings(pair.delta_m));
@@ -202,11 +215,11 @@ std::vector<Count> measure(const Pair& pair, const Motion& motion, int slides,
   return counts;
 }
 
-void measure_all(int slides, const std::vector<std::uint64_t>& budgets,
+void measure_all(int slides, const std::vector<Budget>& budgets,
                  const std::vector<Asked>& all) {
   std::puts(
-      "a,b,delta_rel,motion,units,touching,missed,dropped,denied,late,late_median,late_90,"
-      "late_most,deepest");
+      "a,b,delta_rel,motion,units,reserve,touching,missed,dropped,denied,late,late_median,late_90,"
+      "late_most,deepest,ticks,drawn,in_vain,most_units");
   std::array<std::vector<Count>, std::size(kMotions)> sums;
   sums.fill(std::vector<Count>(budgets.size()));
   for (const Asked& asked : all) {
@@ -226,12 +239,20 @@ void measure_all(int slides, const std::vector<std::uint64_t>& budgets,
   }
 }
 
-std::vector<std::uint64_t> numbers_of(const char* text) {
-  std::vector<std::uint64_t> out;
+/// "units" or "units+reserve", with commas between; empty where it is neither.
+std::vector<Budget> budgets_of(const char* text) {
+  std::vector<Budget> out;
   char* end = nullptr;
   for (const char* at = text; *at != '\0'; at = *end == ',' ? end + 1 : end) {
-    out.push_back(std::strtoull(at, &end, 10));
-    if (end == at || (*end != ',' && *end != '\0')) return {};
+    Budget& budget = out.emplace_back();
+    budget.units = std::strtoull(at, &end, 10);
+    if (end == at) return {};
+    if (*end == '+') {
+      at = end + 1;
+      budget.reserve_units = std::strtoull(at, &end, 10);
+      if (end == at) return {};
+    }
+    if (*end != ',' && *end != '\0') return {};
   }
   return out;
 }
@@ -242,8 +263,8 @@ std::vector<std::uint64_t> numbers_of(const char* text) {
 int main(int argc, char** argv) {
   using namespace palpate::bench;
   const int slides = argc > 1 ? std::atoi(argv[1]) : 0;
-  const std::vector<std::uint64_t> budgets =
-      argc > 2 ? numbers_of(argv[2]) : std::vector<std::uint64_t>{};
+  const std::vector<palpate::Budget> budgets =
+      argc > 2 ? budgets_of(argv[2]) : std::vector<palpate::Budget>{};
   std::vector<Asked> pairs;
   for (int i = 3; i + 2 < argc; i += 3) {
     pairs.push_back({argv[i], argv[i + 1], std::atof(argv[i + 2])});
@@ -253,7 +274,7 @@ int main(int argc, char** argv) {
         return p.delta_rel > 0 && p.delta_rel < kReach;
       });
   if (slides <= 0 || budgets.empty() || !good_pairs) {
-    std::fputs("usage: bench_onset SLIDES UNITS[,UNITS...] [A B DELTA]...\n", stderr);
+    std::fputs("usage: bench_onset SLIDES BUDGET[,BUDGET...] [A B DELTA]...\n", stderr);
     return 2;
   }
   if (pairs.empty()) {
