@@ -71,6 +71,10 @@ constexpr Key<Scene> kEngineKeys[] = {
      OptionalReal<Scene>{[](Scene& s) -> std::optional<double>& { return s.budget_us; }, 0, 1e9},
      "time after which one tick stops refining; absent: unlimited in replay, chosen from the rate "
      "in run"},
+    {"reserve_us", "µs",
+     OptionalReal<Scene>{[](Scene& s) -> std::optional<double>& { return s.reserve_us; }, 0, 1e9},
+     "`regions`: so much longer than `budget_us` for a tick that feels nothing and cannot rule out "
+     "a contact, until it can; absent: none in replay, what the rate leaves in run"},
 };
 
 constexpr Key<Scene> kForceKeys[] = {

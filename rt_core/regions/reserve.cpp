@@ -20,6 +20,9 @@ bool may_touch_unfelt(const Work& work) noexcept {
   return false;
 }
 
+/// Of a region: what a tick before has begun may have been for a wider interval.
+constexpr int kSearches = 2;
+
 /// The nearest first.
 void search_for_any_of(Work& work, std::uint32_t pair) noexcept {
   MinQueue<std::uint32_t, NearerWitness> open(work.memory.queue, NearerWitness{work});
@@ -31,8 +34,10 @@ void search_for_any_of(Work& work, std::uint32_t pair) noexcept {
   while (!found && !open.empty() && work.pace.go_on()) {
     Active& item = work.active()[open.top()];
     open.pop();
-    search_for_any(work, item);
-    found = work.is_contact(item);
+    for (int k = 0; k < kSearches && !found && item.width > kClosed; ++k) {
+      search_for_any(work, item);
+      found = work.is_contact(item);
+    }
   }
 }
 

@@ -24,6 +24,7 @@ struct Case {
   std::uint64_t units;
   std::uint64_t hash;
   double pace = 1;  ///< of the motion
+  std::uint64_t reserve_units = 0;
 };
 
 constexpr double kDelta_m = 0.05;
@@ -70,6 +71,12 @@ const Case kCases[] = {
      60,
      0x99abd7afabde0f60,
      0.03},
+    {"regions, 5 units and a reserve",
+     {.engine = EngineKind::regions, .delta_m = kDelta_m},
+     5,
+     0x5af9e3ab69da6447,
+     1,
+     kUnlimited},
     {"regions, tolerance",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .force_tolerance_N = 3},
      kUnlimited,
@@ -131,7 +138,8 @@ std::uint64_t hash_of(const ImageView& image, const Case& test) {
   for (int i = 0; i < kTicks; ++i) {
     const Pose poses[2] = {pose_of(test.pace * i), {}};
     TickResult r;
-    if (tick(*engine, poses, {.units = test.units}, r) != Status::ok) return 0;
+    const Budget budget{.units = test.units, .reserve_units = test.reserve_units};
+    if (tick(*engine, poses, budget, r) != Status::ok) return 0;
     hash.add(r.wrench.force_N);
     hash.add(r.wrench.torque_Nm);
     hash.add(r.certificate.error_bound_m);

@@ -16,6 +16,7 @@
 #include "tests/support/brute_force.hpp"
 #include "tests/support/counting_clock.hpp"
 #include "tests/support/effort.hpp"
+#include "tests/support/gears.hpp"
 #include "tests/support/ground.hpp"
 #include "tests/support/placements.hpp"
 #include "tests/support/shapes.hpp"
@@ -281,30 +282,6 @@ TEST(RegionsBudget, however_little_there_is_after_a_jump_some_contact_is_known) 
   EXPECT_EQ(lost, 0);
 }
 
-/// Turned at random, and brought to this distance from a random direction.
-Pose met_at_random(const bake::Mesh& a, const bake::Mesh& b, double apart, std::mt19937& rng) {
-  const Vec3d direction = random_unit(rng);
-  return approach(a, b, apart, 4, direction, turn(3.0 * random_unit(rng)));
-}
-
-/// Whose flanks are regions of their own, fifty tolerances long.
-struct Gears {
-  static constexpr double kDelta = 0.02;
-
-  Gears(std::uint32_t teeth_of_a, std::uint32_t teeth_of_b)
-      : a(gear(teeth_of_a, 1, 0.5), options()), b(gear(teeth_of_b, 0.9, 0.5), options()) {}
-  BakedScene scene() const {
-    return {{a.view, b.view}, {{0, 1}}, {.engine = EngineKind::regions, .delta_m = kDelta}};
-  }
-  static bake::BakeOptions options() {
-    bake::BakeOptions options = options_for(bake::ForEngine::regions);
-    options.delta_rel = kDelta;
-    return options;
-  }
-
-  BakedBody a, b;
-};
-
 /// Flanks may be near anywhere along them. Looked from at their centres alone half of these jumps
 /// felt nothing, and without searches of what looks have missed, eight.
 TEST(RegionsBudget, after_a_jump_needles_are_found_to_touch) {
@@ -366,31 +343,6 @@ TEST(RegionsBudget, held_needles_are_found_to_touch_however_little_a_tick_has) {
   }
   RecordProperty("units", std::to_string(most));
 }
-
-/// The least distance of a and b there, or delta.
-double distance_at(BakedScene& exact, const Pose& pose) {
-  const Pose poses[2] = {pose, {}};
-  const TickResult r = tick_or_fail(*exact.engine, poses);
-  return r.contacts.empty() ? Gears::kDelta : r.min_distance_m;
-}
-
-/// One gear upon another, and how it goes on from there.
-struct Slide {
-  Slide(BakedScene& exact, std::mt19937& rng)
-      : down(random_unit(rng)),
-        axis(random_unit(rng)),
-        pose{2.5 * down, turn(3.0 * random_unit(rng))} {
-    while (distance_at(exact, pose) > 0.4 * Gears::kDelta) {
-      pose.position_m -= (distance_at(exact, pose) - 0.3 * Gears::kDelta) * down;
-    }
-  }
-  void go_on(double way) {
-    pose.position_m += way * cross(down, axis);
-    pose.orientation = turn(way * axis) * pose.orientation;
-  }
-  Vec3d down, axis;
-  Pose pose;
-};
 
 /// A scout of a hundred units does not find where gears touch, and the next one would look at the
 /// same places again: until they do, those that have been looked at in vain are passed over, and

@@ -19,7 +19,9 @@ void expect_no_allocation_and_no_fault(BakedScene& scene, std::span<const Pose> 
                                        int warm, int ticks) {
   if (!realtime::thread_counters().allocator_calls)
     GTEST_SKIP() << "a sanitizer brings an allocator of its own";
-  const auto budget_of = [](int i) { return i % 3 == 0 ? Budget{.units = 50} : Budget{}; };
+  const auto budget_of = [](int i) {
+    return i % 3 == 0 ? Budget{.units = 50, .reserve_units = i % 2 == 0 ? 0u : 500u} : Budget{};
+  };
   TickResult result;
   for (int i = 0; i < warm; ++i) {
     place(i);

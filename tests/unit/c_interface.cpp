@@ -100,7 +100,7 @@ TEST(CInterface, gives_the_same_bits_as_the_engine) {
     TickResult r;
     palpate_result c;
     ASSERT_EQ(tick(*same.engine, poses, {.units = 50}, r), Status::ok);
-    const palpate_budget budget{50, nullptr, nullptr, 0};
+    const palpate_budget budget{50, nullptr, nullptr, 0, 0, 0};
     ASSERT_EQ(palpate_tick(c_engine, c_poses, &budget, &c), PALPATE_OK);
     EXPECT_EQ(std::memcmp(c.force_N, &r.wrench.force_N, sizeof c.force_N), 0);
     EXPECT_EQ(std::memcmp(c.torque_Nm, &r.wrench.torque_Nm, sizeof c.torque_Nm), 0);
@@ -146,7 +146,7 @@ struct CScene {
   }
   palpate_result tick(const palpate_pose& tool) {
     const palpate_pose poses[2] = {tool, {{0, 0, 0}, {1, 0, 0, 0}}};
-    const palpate_budget budget{UINT64_MAX, nullptr, nullptr, 0};
+    const palpate_budget budget{UINT64_MAX, nullptr, nullptr, 0, 0, 0};
     palpate_result result;
     EXPECT_EQ(palpate_tick(engine, poses, &budget, &result), PALPATE_OK);
     return result;

@@ -270,6 +270,10 @@ TEST_F(Replay, Wrong_options_exit_2) {
   expect_refusal(replay({"--budget-us", "nan"}), 2, "--budget-us");
   expect_refusal(replay({"--budget-units", "-1"}), 2, "--budget-units");
   expect_refusal(replay({"--budget-units", "1.5"}), 2, "--budget-units");
+  expect_refusal(replay({"--reserve-units", "1"}), 2, "--budget-units");
+  expect_refusal(replay({"--budget-units", "1", "--reserve-us", "1"}), 2, "xcludes");
+  expect_refusal(replay({"--budget-units", "1", "--reserve-units", "-1"}), 2, "--reserve-units");
+  expect_refusal(replay({"--reserve-us", "-1"}), 2, "--reserve-us");
   expect_refusal(replay({"--repeat", "0"}), 2, "--repeat");
   expect_refusal(replay({"--contacts", at("ticks.csv")}), 2, "cannot be one file");
   expect_refusal(replay({"--surprise"}), 2, "--surprise");

@@ -60,6 +60,7 @@ TEST_F(ConfigScene, OnlyBodies_load_defaults) {
   EXPECT_FALSE(s.settings.exact);
   EXPECT_TRUE(s.settings.interpolate);
   EXPECT_FALSE(s.budget_us.has_value());
+  EXPECT_FALSE(s.reserve_us.has_value());
   EXPECT_EQ(s.settings.max_force_N, 3.0);
   EXPECT_EQ(s.settings.max_torque_Nm, 0.1);
   EXPECT_EQ(s.max_memory_MB, 1000.0);
@@ -82,6 +83,7 @@ s0 = 0.05
 exact = true
 interpolate = false
 budget_us = 400
+reserve_us = 150
 [force]
 stiffness_N_per_m = 500.0
 cluster_radius_m = 0.004
@@ -136,6 +138,7 @@ b = "a"
   EXPECT_TRUE(s.settings.exact);
   EXPECT_FALSE(s.settings.interpolate);
   EXPECT_EQ(s.budget_us, 400.0);
+  EXPECT_EQ(s.reserve_us, 150.0);
   EXPECT_EQ(s.settings.stiffness_N_per_m, 500.0);
   EXPECT_EQ(s.settings.cluster_radius_m, 0.004);
   EXPECT_EQ(s.settings.max_force_N, 2.5);

@@ -99,6 +99,36 @@ TEST(Meter, units_set_aside_are_there_for_the_tail_and_no_more_than_half) {
   EXPECT_FALSE(unlimited.limited());
 }
 
+TEST(Meter, reserve_comes_after_the_budget_once) {
+  Meter meter({.units = 100, .reserve_units = 50}, {});
+  meter.charge(80);
+  meter.set_aside(30);
+  EXPECT_TRUE(meter.out_of_units());
+  EXPECT_TRUE(meter.draw_on_reserve());
+  EXPECT_EQ(meter.queries_left(), 70u);  // what was set aside, too
+  EXPECT_FALSE(meter.draw_on_reserve());
+
+  SetClock clock;
+  Budget budget = clock.budget();
+  budget.reserve_ns = kDeadline_ns / 2;
+  Meter timed(budget, learnt(50'000));
+  timed.expect_contacts(100);
+  const std::uint64_t before = end_ns(timed, clock);
+  EXPECT_TRUE(timed.draw_on_reserve());
+  EXPECT_EQ(end_ns(timed, clock), before + kDeadline_ns / 2);  // a tail of the same length is left
+}
+
+TEST(Meter, reserve_of_what_is_not_limited_is_none) {
+  EXPECT_FALSE(Meter({}, {}).draw_on_reserve());
+  EXPECT_FALSE(Meter({.units = 5}, {}).draw_on_reserve());
+  EXPECT_FALSE(Meter({.units = 5, .reserve_ns = 5}, {}).draw_on_reserve());
+  EXPECT_FALSE(Meter({.reserve_units = 5, .reserve_ns = 5}, {}).draw_on_reserve());
+  Meter endless({.units = 5, .reserve_units = Budget{}.units}, {});
+  endless.charge(1000);
+  EXPECT_TRUE(endless.draw_on_reserve());
+  EXPECT_FALSE(endless.out_of_units());
+}
+
 TEST(Meter, tail_has_three_quarters_of_the_time_that_is_left_for_searches) {
   SetClock clock;
   Meter meter(clock.budget(), learnt(kDeadline_ns / 4));

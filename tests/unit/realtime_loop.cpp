@@ -30,11 +30,12 @@ struct BusyLoop {
       : rig({}, settings, [this, cost_ns](const Pose&, const Budget& budget, TickResult& out) {
           out = {};
           allowed_ns.push_back(budget.deadline_ns - budget.clock_ns(budget.clock_context));
+          reserve_ns.push_back(budget.reserve_ns);
           rig.clock.spend(cost_ns(queries++));
           return Status::ok;
         }) {}
   std::uint64_t queries = 0;
-  std::vector<std::uint64_t> allowed_ns;
+  std::vector<std::uint64_t> allowed_ns, reserve_ns;
   VirtualLoop rig;
 };
 
@@ -83,20 +84,36 @@ TEST(Loop, always_late_ends_in_a_fault_with_zero_force) {
 
 TEST(Loop, query_gets_the_budget_or_what_is_left_of_its_share_of_the_period) {
   LoopSettings settings = for_periods(20);
-  settings.budget_us = 400;
+  settings.query_time.budget_us = 400;
   BusyLoop budgeted(settings, [](std::uint64_t) { return 0; });
   budgeted.rig.run();
   EXPECT_EQ(budgeted.allowed_ns.at(5), 400'000u);
 
-  settings.budget_us = 5000;
+  settings.query_time.budget_us = 5000;
   BusyLoop bounded(settings, [](std::uint64_t) { return 0; });
   bounded.rig.run();
   EXPECT_EQ(bounded.allowed_ns.at(5), 800'000u);
 
-  settings.budget_us.reset();
+  settings.query_time.budget_us.reset();
   BusyLoop unbudgeted(settings, [](std::uint64_t) { return 0; });
   unbudgeted.rig.run();
   EXPECT_EQ(unbudgeted.allowed_ns.at(5), 800'000u);
+}
+
+TEST(Loop, query_has_the_rest_of_that_share_in_reserve_unless_it_is_given_less) {
+  const auto reserve = [](std::optional<double> budget_us, std::optional<double> reserve_us) {
+    LoopSettings settings = for_periods(20);
+    settings.query_time = {budget_us, reserve_us};
+    BusyLoop busy(settings, [](std::uint64_t) { return 0; });
+    busy.rig.run();
+    return busy.reserve_ns.at(5);
+  };
+  EXPECT_EQ(reserve(300, {}), 500'000u);
+  EXPECT_EQ(reserve(300, 100), 100'000u);
+  EXPECT_EQ(reserve(300, 0), 0u);
+  EXPECT_EQ(reserve(300, 1e9), 500'000u);
+  EXPECT_EQ(reserve(5000, 100), 0u);
+  EXPECT_EQ(reserve({}, {}), 0u);
 }
 
 TEST(Loop, stop_flag_ends_the_run_with_a_command_of_zero) {

@@ -69,9 +69,11 @@ TEST(SweepSettings, Scene_gets_the_setting_and_keeps_the_rest) {
   scene.settings.stiffness_N_per_m = 123;
   scene.kappa = 0.7;
   scene.budget_us = 400;
+  scene.reserve_us = 200;
   const config::Scene unlimited = with_setting(scene, {.s0 = 0.3, .delta_m = 0.002});
   EXPECT_FALSE(unlimited.kappa);
   EXPECT_FALSE(unlimited.budget_us);
+  EXPECT_FALSE(unlimited.reserve_us);  // a budget in a table is all that a tick has
   EXPECT_EQ(unlimited.settings.s0, 0.3);
   EXPECT_EQ(unlimited.settings.delta_m, 0.002);
   EXPECT_EQ(unlimited.settings.stiffness_N_per_m, 123);

@@ -20,7 +20,7 @@ namespace {
 struct ReplayArguments {
   std::string scene, poses, ticks, contacts, engine;
   bool exact = false, json = false, quiet = false;
-  std::optional<double> s0, budget_us, kappa, force_tolerance_N;
+  std::optional<double> s0, budget_us, reserve_us, kappa, force_tolerance_N;
   ReplayOptions options;
 };
 
@@ -37,7 +37,9 @@ config::Scene load(const ReplayArguments& a) {
   if (a.s0) scene.settings.s0 = *a.s0;
   if (a.kappa) scene.kappa = a.kappa;
   if (a.force_tolerance_N) scene.settings.force_tolerance_N = *a.force_tolerance_N;
-  if (a.exact || a.budget_us || a.options.budget_units) scene.budget_us = a.budget_us;
+  const bool own_budget = a.exact || a.budget_us || a.options.budget_units;
+  if (own_budget) scene.budget_us = a.budget_us;
+  if (own_budget || a.reserve_us) scene.reserve_us = a.reserve_us;
   return scene;
 }
 
@@ -168,6 +170,15 @@ void add_budget(CLI::App& command, ReplayArguments& a) {
                          "stop refining a tick after this many convex-pair queries: repeatable");
   time->check(number_between(0, 1e9))->excludes(units);
   units->check(number_between(0, 1e18));
+  CLI::Option* more_time =
+      command.add_option("--reserve-us", a.reserve_us,
+                         "so much longer (us) for a tick that feels nothing and cannot rule out a "
+                         "contact, until it can (regions engine)");
+  CLI::Option* more_units =
+      command.add_option("--reserve-units", a.options.reserve_units,
+                         "the same in units beyond --budget-units: repeatable");
+  more_time->check(number_between(0, 1e9))->excludes(units);
+  more_units->check(number_between(0, 1e18))->needs(units);
 }
 
 }  // namespace

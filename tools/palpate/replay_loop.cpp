@@ -27,7 +27,9 @@ class Replay {
         unlimited_(!options.budget_units && !scene.budget_us),
         clock_ns_(options.processor_time ? ProcessorClock::read : wall_ns) {
     if (options.budget_units) budget_.units = *options.budget_units;
+    budget_.reserve_units = options.reserve_units;
     if (scene.budget_us) budget_ns_ = static_cast<std::uint64_t>(*scene.budget_us * 1e3);
+    budget_.reserve_ns = static_cast<std::uint64_t>(scene.reserve_us.value_or(0) * 1e3);
     if (budget_ns_ || options.profile) {
       budget_.clock_ns = clock_ns_;
       budget_.clock_context = &processor_clock_;

@@ -18,6 +18,7 @@ namespace palpate::cli {
 
 struct ReplayOptions {
   std::optional<std::uint64_t> budget_units;  ///< beside the scene's budget_us; absent: unlimited
+  std::uint64_t reserve_units = 0;            ///< beyond them (Budget::reserve_units)
   unsigned repeat = 1;                        ///< >= 1
   /// Times and budgets in processor time of the thread, which does not count when others have the
   /// processor; else in real time.

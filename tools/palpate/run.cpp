@@ -96,7 +96,7 @@ realtime::LoopSettings loop_settings(const RunOptions& options, const config::Sc
                                      double rate_Hz, const hal::Capabilities& device) {
   realtime::LoopSettings settings;
   settings.rate_Hz = rate_Hz;
-  settings.budget_us = scene.budget_us;
+  settings.query_time = {scene.budget_us, scene.reserve_us};
   settings.passivity_control = scene.passivity_control;
   if (options.seconds) {
     settings.periods = static_cast<std::uint64_t>(std::llround(*options.seconds * rate_Hz));
@@ -133,7 +133,8 @@ class ServerThread {
     realtime::RealtimeOptions realtime = options.realtime;
     realtime.fifo_priority = std::max(realtime.fifo_priority - 2, 0);
     realtime.cpu = -1;
-    const realtime::ServerSettings settings{*scene.contact_rate_Hz, scene.budget_us};
+    const realtime::ServerSettings settings{*scene.contact_rate_Hz,
+                                            {scene.budget_us, scene.reserve_us}};
     thread_.emplace(realtime,
                     [this, settings, server, &clock] { server->run(settings, clock, stop_); });
   }

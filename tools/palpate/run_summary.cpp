@@ -93,7 +93,9 @@ std::string contact_lines(const LoopReport& r) {
                               mean(r.force_N_sum, r.ticks), r.force_N_max, r.torque_Nm_max)) +
          line("energy",
               format("hand to scene %.2e J, never below %.2e J", r.energy_J, r.energy_J_min)) +
-         line("cut by budget", format("%.1f %% of the ticks", 100 * share(r.truncated, r.queried)));
+         line("cut by budget",
+              format("%.1f %% of the ticks; %.1f %% went on to see whether anything touches",
+                     100 * share(r.truncated, r.queried), 100 * share(r.on_reserve, r.queried)));
 }
 
 std::string host_lines(const RunOutcome& o) {
@@ -177,6 +179,7 @@ nlohmann::json run_json(const RunOutcome& o) {
   j["truncated"] = r.truncated;
   j["touching"] = r.touching;
   j["undecided"] = r.undecided;
+  j["on_reserve"] = r.on_reserve;
   j["contacts_mean"] = mean(static_cast<double>(r.contacts), r.queried);
   j["force_N"] = {{"mean", mean(r.force_N_sum, r.ticks)}, {"max", r.force_N_max}};
   j["torque_Nm"] = {{"max", r.torque_Nm_max}};

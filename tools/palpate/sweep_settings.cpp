@@ -106,6 +106,7 @@ config::Scene with_setting(const config::Scene& scene, const SweepSetting& s) {
   out.kappa.reset();
   if (std::isfinite(s.kappa)) out.kappa = s.kappa;
   out.budget_us.reset();
+  out.reserve_us.reset();
   if (std::isfinite(s.budget_us)) out.budget_us = s.budget_us;
   return out;
 }

@@ -15,15 +15,7 @@ void ContactServer::run(const ServerSettings& settings, hal::Clock& clock,
   std::uint64_t due_ns = clock.now_ns();
   while (!stop.load(std::memory_order_relaxed)) {
     clock.sleep_until(due_ns);
-    Budget budget;
-    budget.clock_ns = clock_of;
-    budget.clock_context = &clock;
-    budget.deadline_ns = due_ns + share_ns;
-    if (settings.budget_us) {
-      budget.deadline_ns =
-          std::min(budget.deadline_ns, clock.now_ns() + nanoseconds(1e-6 * *settings.budget_us));
-    }
-    serve(budget);
+    serve(budget_between(clock, clock.now_ns(), due_ns + share_ns, settings.query_time));
     const std::uint64_t passed = (clock.now_ns() - due_ns) / period_ns;
     if (passed > 0) late_.fetch_add(1, std::memory_order_relaxed);
     due_ns += (1 + passed) * period_ns;

@@ -12,14 +12,15 @@
 
 #include "hal/clock.hpp"
 #include "hal/exchange.hpp"
+#include "tools/realtime/budget_clock.hpp"
 #include "tools/realtime/contact_query.hpp"
 
 namespace palpate::realtime {
 
 struct ServerSettings {
   double rate_Hz = 1000;
-  std::optional<double> budget_us;  ///< of one query; absent: the period's share alone
-  double period_share = 0.8;        ///< as in LoopSettings
+  QueryTime query_time;       ///< within the period's share
+  double period_share = 0.8;  ///< as in LoopSettings
 };
 
 /// Answers the newest pose that was asked for. No allocation, lock or log; its only system call is

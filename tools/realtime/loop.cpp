@@ -112,14 +112,8 @@ void Loop::read_device(Tick& tick) noexcept {
 void Loop::query_contacts(Tick& tick) noexcept {
   if (!tick.queried) return;
   const double share_s = settings_.period_share / settings_.rate_Hz;
-  Budget budget;
-  budget.clock_ns = clock_of;
-  budget.clock_context = &clock_;
-  budget.deadline_ns = tick.due_ns + nanoseconds(share_s);
-  if (settings_.budget_us) {
-    budget.deadline_ns =
-        std::min(budget.deadline_ns, tick.begin_ns + nanoseconds(1e-6 * *settings_.budget_us));
-  }
+  const Budget budget = budget_between(
+      clock_, tick.begin_ns, tick.due_ns + nanoseconds(share_s), settings_.query_time);
   tick.status = query_.tick(reading_.pose, budget, tick.result);
 }
 
@@ -154,6 +148,7 @@ void Loop::account(const Tick& tick) noexcept {
     if (tick.result.certificate.truncated()) ++r.truncated;
     if (!tick.result.contacts.empty()) ++r.touching;
     if (tick.result.certificate.contact == ContactStatus::undecided) ++r.undecided;
+    if (tick.result.certificate.on_reserve) ++r.on_reserve;
     r.contacts += tick.result.contacts.size();
   }
   const double force_N = norm(command_.wrench.force_N);

@@ -14,6 +14,7 @@
 #include "hal/clock.hpp"
 #include "hal/device.hpp"
 #include "hal/ring.hpp"
+#include "tools/realtime/budget_clock.hpp"
 #include "tools/realtime/contact_query.hpp"
 #include "tools/realtime/histogram.hpp"
 #include "tools/realtime/passivity.hpp"
@@ -28,7 +29,7 @@ struct LoopSettings {
   std::uint64_t periods =
       std::numeric_limits<std::uint64_t>::max();  ///< the run ends after so many periods, run or
                                                   ///< missed
-  std::optional<double> budget_us;  ///< of one contact query; absent: the period's share alone
+  QueryTime query_time;  ///< within the period's share
   /// The contact query ends at this share of the period after the time due, however late the
   /// wake-up was, so that the command leaves in time. The rest is for the tail of the query, which
   /// the budget does not cover, and the command.
@@ -60,6 +61,7 @@ struct LoopReport {
   std::uint64_t truncated = 0;       ///< ticks whose refinement the budget ended
   std::uint64_t touching = 0;        ///< ticks with a contact
   std::uint64_t undecided = 0;       ///< ticks with none, in which none was ruled out
+  std::uint64_t on_reserve = 0;      ///< ticks that went on for a first contact
   std::uint64_t contacts = 0;        ///< sum over ticks
   double force_N_sum = 0;            ///< sum over ticks of the length of the force sent
   double force_N_max = 0;
