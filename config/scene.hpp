@@ -72,8 +72,8 @@ struct Scene {
       1000.0;  ///< [limits], 1 MB = 10^6 bytes: a scene that needs more is refused
   std::optional<double> budget_us;   ///< of one tick; absent: unlimited in replay
   std::optional<double> reserve_us;  ///< beyond that (Budget::reserve_ns); absent: none in replay
-  double rate_Hz = 1000.0;          ///< [run]: of the real-time loop
-  bool passivity_control = true;    ///< [run]: energy that the loop gives out is taken back
+  double rate_Hz = 1000.0;           ///< [run]: of the real-time loop
+  bool passivity_control = true;     ///< [run]: energy that the loop gives out is taken back
   std::optional<double> device_damping_N_s_per_m;  ///< [run]: of the device and the hand on it
   std::optional<double> contact_rate_Hz;           ///< [run]; absent: every tick asks for contacts
   Coupling coupling = Coupling::direct;            ///< [force]

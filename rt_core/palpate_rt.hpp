@@ -120,11 +120,11 @@ struct Budget {
   void* clock_context = nullptr;
   std::uint64_t deadline_ns =
       0;  ///< refinement stops at clock_ns() >= deadline_ns; ignored without a clock
-  /// So many units more, and so much later (ns), for a tick of the regions engine that by then feels
-  /// nothing of two bodies and cannot rule out that they touch: for that question alone, until it is
-  /// answered. The largest numbers: however long it takes, so that no tick in contact reports none.
-  /// Each adds to a limit of its kind, where there is one. A tick of the levels engine has no use
-  /// for it: where its budget ends, simplified pieces are its contacts.
+  /// So many units more, and so much later (ns), for a tick of the regions engine that by then
+  /// feels nothing of two bodies and cannot rule out that they touch: for that question alone,
+  /// until it is answered. The largest numbers: however long it takes, so that no tick in contact
+  /// reports none. Each adds to a limit of its kind, where there is one. A tick of the levels
+  /// engine has no use for it: where its budget ends, simplified pieces are its contacts.
   std::uint64_t reserve_units = 0;
   std::uint64_t reserve_ns = 0;
 };
@@ -231,11 +231,11 @@ Status configure(Engine& engine, const Settings& settings) noexcept;
 /// @param poses  [bodies] body to world; finite, quaternions of unit length within 1e-3 (they are
 /// normalised)
 /// @param out    written only where the result is Status::ok
-/// Errors: bad_pose, bad_argument. Cost: the budget and its reserve, plus at most one convex query (regions engine:
-/// 40 work units) and a tail that is linear in the front and in contacts * log(contacts), and for
-/// which time is left before the deadline. An exact query of the levels engine that has no budget
-/// is done twice in the first tick in which its nodes or contacts do not fit. No allocation, no
-/// lock, no recursion, bounded stack.
+/// Errors: bad_pose, bad_argument. Cost: the budget and its reserve, plus at most one convex query
+/// (regions engine: 40 work units) and a tail that is linear in the front and in contacts *
+/// log(contacts), and for which time is left before the deadline. An exact query of the levels
+/// engine that has no budget is done twice in the first tick in which its nodes or contacts do not
+/// fit. No allocation, no lock, no recursion, bounded stack.
 Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
             TickResult& out) noexcept;
 

@@ -92,8 +92,8 @@ void settle_sides(Work& work) noexcept;
 /// gone through a surface by more than it is wide between two ticks.
 void settle_suspected_sides(Work& work) noexcept;
 
-/// The same wherever nothing is felt and one body may be inside the other, in this tick as far as the
-/// budget goes.
+/// The same wherever nothing is felt and one body may be inside the other, in this tick as far as
+/// the budget goes.
 void settle_open_sides(Work& work) noexcept;
 
 /// Makes the nearest pair of all an active region's witness where one body is inside the other and

@@ -13,7 +13,8 @@ constexpr double kMostTracked = 0.5;
 
 class Tracking {
  public:
-  explicit Tracking(Work& work) noexcept : work_(work), sliding_(work.memory.queue, NearerWitness{work}) {}
+  explicit Tracking(Work& work) noexcept
+      : work_(work), sliding_(work.memory.queue, NearerWitness{work}) {}
 
   void run() noexcept {
     for (std::uint32_t i = 0; i < work_.count; ++i) {

@@ -11,7 +11,8 @@
 namespace palpate::test {
 
 /// Turned at random, and brought to this distance from a random direction.
-inline Pose met_at_random(const bake::Mesh& a, const bake::Mesh& b, double apart, std::mt19937& rng) {
+inline Pose met_at_random(const bake::Mesh& a, const bake::Mesh& b, double apart,
+                          std::mt19937& rng) {
   const Vec3d direction = random_unit(rng);
   return approach(a, b, apart, 4, direction, turn(3.0 * random_unit(rng)));
 }

@@ -196,6 +196,20 @@ TEST_F(Replay, Scene_budget_counts_unless_exact) {
   EXPECT_EQ(rows(test::read_file(at("ticks.csv"))).back()[14], "0");
 }
 
+/// Balls of bumps that touch, and nothing known of them in the first tick.
+TEST_F(Replay, Reserve_decides_whether_anything_touches) {
+  folder_.write("cube.palp", test::read_file(PALPATE_TEST_DATA "/bumpy_ball_regions.bin"));
+  folder_.write("poses.csv", "t,body,px,py,pz,qw,qx,qy,qz\n0,tool,1.95,0,0,1,0,0,0\n");
+  write_scene("engine = \"regions\"\nbudget_us = 0.0\nreserve_us = 1e9");
+  const auto contacts = [&](const std::vector<std::string>& options) {
+    EXPECT_EQ(replay(options).status, 0);
+    return number(rows(test::read_file(at("ticks.csv"))).back()[8]);
+  };
+  EXPECT_GT(contacts({}), 0);
+  EXPECT_EQ(contacts({"--budget-units", "0"}), 0);  // in place of all of the scene's
+  EXPECT_GT(contacts({"--budget-units", "0", "--reserve-units", "1000000"}), 0);
+}
+
 TEST_F(Replay, Room_grows_where_nothing_else_is_limited) {
   write_scene("", "[limits]\nnodes = 1\ncontacts = 1\n");
   ASSERT_EQ(replay({"--exact"}).status, 0);

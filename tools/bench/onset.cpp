@@ -187,13 +187,13 @@ Count count(Bench& bench, const std::vector<Pose>& poses, const std::vector<doub
 
 void print(const Asked& asked, const Motion& motion, const Budget& budget, const Count& found) {
   const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
-  std::printf("%s,%s,%g,%s,%llu,%llu,%llu,%llu,%llu,%llu,%zu,%.0f,%.0f,%.0f,%.2f,%llu,%llu,%llu,%llu\n",
-              asked.a.c_str(), asked.b.c_str(), asked.delta_rel, motion.name, number(budget.units),
-              number(budget.reserve_units), number(found.touching), number(found.missed),
-              number(found.dropped), number(found.denied), found.late.size(),
-              percentile(found.late, 0.5), percentile(found.late, 0.9), percentile(found.late, 1),
-              found.deepest, number(found.ticks), number(found.drawn), number(found.in_vain),
-              number(found.most_units));
+  std::printf(
+      "%s,%s,%g,%s,%llu,%llu,%llu,%llu,%llu,%llu,%zu,%.0f,%.0f,%.0f,%.2f,%llu,%llu,%llu,%llu\n",
+      asked.a.c_str(), asked.b.c_str(), asked.delta_rel, motion.name, number(budget.units),
+      number(budget.reserve_units), number(found.touching), number(found.missed),
+      number(found.dropped), number(found.denied), found.late.size(), percentile(found.late, 0.5),
+      percentile(found.late, 0.9), percentile(found.late, 1), found.deepest, number(found.ticks),
+      number(found.drawn), number(found.in_vain), number(found.most_units));
   std::fflush(stdout);
 }
 
@@ -215,8 +215,7 @@ std::vector<Count> measure(const Pair& pair, const Motion& motion, int slides,
   return counts;
 }
 
-void measure_all(int slides, const std::vector<Budget>& budgets,
-                 const std::vector<Asked>& all) {
+void measure_all(int slides, const std::vector<Budget>& budgets, const std::vector<Asked>& all) {
   std::puts(
       "a,b,delta_rel,motion,units,reserve,touching,missed,dropped,denied,late,late_median,late_90,"
       "late_most,deepest,ticks,drawn,in_vain,most_units");

@@ -23,8 +23,8 @@ inline std::uint64_t nanoseconds(double s) {
 /// Of one query.
 struct QueryTime {
   std::optional<double> budget_us;  ///< absent: until the query has to end
-  /// Beyond that, while nothing is felt and no contact ruled out (Budget::reserve_ns); absent: until
-  /// the query has to end.
+  /// Beyond that, while nothing is felt and no contact ruled out (Budget::reserve_ns); absent:
+  /// until the query has to end.
   std::optional<double> reserve_us;
 };
 

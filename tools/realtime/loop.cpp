@@ -112,8 +112,8 @@ void Loop::read_device(Tick& tick) noexcept {
 void Loop::query_contacts(Tick& tick) noexcept {
   if (!tick.queried) return;
   const double share_s = settings_.period_share / settings_.rate_Hz;
-  const Budget budget = budget_between(
-      clock_, tick.begin_ns, tick.due_ns + nanoseconds(share_s), settings_.query_time);
+  const Budget budget = budget_between(clock_, tick.begin_ns, tick.due_ns + nanoseconds(share_s),
+                                       settings_.query_time);
   tick.status = query_.tick(reading_.pose, budget, tick.result);
 }
 

@@ -29,7 +29,7 @@ struct LoopSettings {
   std::uint64_t periods =
       std::numeric_limits<std::uint64_t>::max();  ///< the run ends after so many periods, run or
                                                   ///< missed
-  QueryTime query_time;  ///< within the period's share
+  QueryTime query_time;                           ///< within the period's share
   /// The contact query ends at this share of the period after the time due, however late the
   /// wake-up was, so that the command leaves in time. The rest is for the tail of the query, which
   /// the budget does not cover, and the command.
