@@ -96,19 +96,18 @@ class Meter {
     stop_units_ = budget_.units - (units < half ? units : half);
   }
 
-  /// What the budget has in reserve is to be had from here on, and what was held back or set aside
-  /// as well. Once.
-  /// @return false where there is none
-  bool draw_on_reserve() noexcept {
-    const bool more_units = budget_.units != kUnlimited && budget_.reserve_units > 0;
-    const bool more_time = limited_in_time() && budget_.reserve_ns > 0;
-    if (!more_units && !more_time) return false;
+  /// Of units or time, where that is limited.
+  [[nodiscard]] bool has_reserve() const noexcept {
+    return (budget_.units != kUnlimited && budget_.reserve_units > 0) ||
+           (limited_in_time() && budget_.reserve_ns > 0);
+  }
+  /// It is to be had from here on, and what was held back or set aside as well; then it is gone.
+  void draw_on_reserve() noexcept {
     budget_.units = sum_of(budget_.units, budget_.reserve_units);
     budget_.deadline_ns = sum_of(budget_.deadline_ns, budget_.reserve_ns);
     budget_.reserve_units = budget_.reserve_ns = 0;
-    if (more_time) leave_for_tail(contacts_);
+    if (budget_.clock_ns != nullptr) leave_for_tail(contacts_);
     release();
-    return true;
   }
 
   /// Units left, as far as a counter of 32 bits tells.

@@ -13,13 +13,6 @@ namespace {
 /// nearly all (narrow.cpp, gather.cpp).
 constexpr double kMostScouted = 1000;
 
-bool may_touch_unfelt(const Work& work) noexcept {
-  for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
-    if (work.may_touch_unfelt(i)) return true;
-  }
-  return false;
-}
-
 /// Of a region: what a tick before has begun may have been for a wider interval.
 constexpr int kSearches = 2;
 
@@ -41,21 +34,40 @@ void search_for_any_of(Work& work, std::uint32_t pair) noexcept {
   }
 }
 
+void find_first_contact(Work& work, std::uint32_t pair) noexcept {
+  scout(work, pair, kMostScouted);
+  if (work.may_touch_unfelt(pair)) search_for_any_of(work, pair);
+}
+
+void draw_on_reserve(Work& work) noexcept {
+  QueryResult& result = work.result;
+  if (result.on_reserve) return;
+  result.on_reserve = true;
+  result.truncated_by_units = work.truncated && work.pace.units_ended();
+  result.truncated_by_time = work.truncated && work.pace.time_ended();
+  work.meter.draw_on_reserve();
+  work.pace.resume();
+}
+
 }  // namespace
 
 void decide_on_reserve(Work& work) noexcept {
-  if (!work.demand.limited || !(may_touch_unfelt(work) || may_be_inside(work))) return;
-  QueryResult& result = work.result;
-  result.truncated_by_units = work.truncated && work.pace.units_ended();
-  result.truncated_by_time = work.truncated && work.pace.time_ended();
-  if (!work.meter.draw_on_reserve()) return;
-  result.on_reserve = true;
-  work.pace.resume();
-  for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
-    if (!work.may_touch_unfelt(i)) continue;
-    scout(work, i, kMostScouted);
-    if (work.may_touch_unfelt(i)) search_for_any_of(work, i);
+  if (!work.demand.limited || !work.meter.has_reserve()) return;
+  const std::span<const Active> active = work.active();
+  std::size_t end = 0;
+  for (std::size_t first = 0; first < active.size(); first = end) {  // of each pair
+    bool open = false;
+    bool felt = false;
+    for (end = first; end < active.size() && active[end].pair == active[first].pair; ++end) {
+      open |= active[end].width > kClosed;
+      felt |= work.is_contact(active[end]);
+    }
+    if (!open || felt) continue;
+    draw_on_reserve(work);
+    find_first_contact(work, active[first].pair);
   }
+  if (!may_be_inside(work)) return;
+  draw_on_reserve(work);
   settle_open_sides(work);
 }
 

@@ -104,9 +104,10 @@ TEST(Meter, reserve_comes_after_the_budget_once) {
   meter.charge(80);
   meter.set_aside(30);
   EXPECT_TRUE(meter.out_of_units());
-  EXPECT_TRUE(meter.draw_on_reserve());
+  EXPECT_TRUE(meter.has_reserve());
+  meter.draw_on_reserve();
   EXPECT_EQ(meter.queries_left(), 70u);  // what was set aside, too
-  EXPECT_FALSE(meter.draw_on_reserve());
+  EXPECT_FALSE(meter.has_reserve());
 
   SetClock clock;
   Budget budget = clock.budget();
@@ -114,18 +115,19 @@ TEST(Meter, reserve_comes_after_the_budget_once) {
   Meter timed(budget, learnt(50'000));
   timed.expect_contacts(100);
   const std::uint64_t before = end_ns(timed, clock);
-  EXPECT_TRUE(timed.draw_on_reserve());
+  timed.draw_on_reserve();
   EXPECT_EQ(end_ns(timed, clock), before + kDeadline_ns / 2);  // a tail of the same length is left
 }
 
 TEST(Meter, reserve_of_what_is_not_limited_is_none) {
-  EXPECT_FALSE(Meter({}, {}).draw_on_reserve());
-  EXPECT_FALSE(Meter({.units = 5}, {}).draw_on_reserve());
-  EXPECT_FALSE(Meter({.units = 5, .reserve_ns = 5}, {}).draw_on_reserve());
-  EXPECT_FALSE(Meter({.reserve_units = 5, .reserve_ns = 5}, {}).draw_on_reserve());
+  EXPECT_FALSE(Meter({}, {}).has_reserve());
+  EXPECT_FALSE(Meter({.units = 5}, {}).has_reserve());
+  EXPECT_FALSE(Meter({.units = 5, .reserve_ns = 5}, {}).has_reserve());
+  EXPECT_FALSE(Meter({.reserve_units = 5, .reserve_ns = 5}, {}).has_reserve());
   Meter endless({.units = 5, .reserve_units = Budget{}.units}, {});
   endless.charge(1000);
-  EXPECT_TRUE(endless.draw_on_reserve());
+  EXPECT_TRUE(endless.has_reserve());
+  endless.draw_on_reserve();
   EXPECT_FALSE(endless.out_of_units());
 }
 
