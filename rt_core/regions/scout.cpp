@@ -140,17 +140,15 @@ class Scout {
       search_for_any(work_, work_.active()[index]);
       return work_.is_felt(work_.active()[index]);
     }
-    if (work_.swept) {
-      const Reach reach{.limit = limit_ + kClosed, .first = true};
-      SearchScratch& scratch = *work_.memory.search;
-      const Bounds found = search(*work_.memory.kernels, frame_, scratch, pace_, region, {}, reach);
-      // Of pairs that it has kept the bound says nothing.
-      if (scratch.near.count == 0) {
-        work_.memory.lasting[state] = static_cast<double>(found.rest) + way_;
-      }
-      return found.best.known() && take(found.best);
+    if (!work_.swept) return false;
+    const Reach reach{.limit = limit_ + kClosed, .first = true};
+    SearchScratch& scratch = *work_.memory.search;
+    const Bounds found = search(*work_.memory.kernels, frame_, scratch, pace_, region, {}, reach);
+    // Of pairs that it has kept the bound says nothing.
+    if (scratch.near.count == 0) {
+      work_.memory.lasting[state] = static_cast<double>(found.rest) + way_;
     }
-    return false;
+    return found.best.known() && take(found.best);
   }
 
   [[nodiscard]] bool is_coarse() const noexcept {
