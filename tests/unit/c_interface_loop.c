@@ -25,7 +25,7 @@ int run(const void* tool_image, size_t tool_bytes, const void* part_image, size_
     return 1;
   palpate_pose poses[2] = {{{0, 0, 0}, {1, 0, 0, 0}}, {{0, 0, 0}, {1, 0, 0, 0}}};
   while (read_device(&poses[0])) {
-    const palpate_budget budget = {UINT64_MAX, cycle_ns, 0, cycle_ns(0) + 400000, 0, 200000};
+    const palpate_budget budget = {UINT64_MAX, cycle_ns, 0, cycle_ns(0) + 400000, 0, 0};
     const double still[3] = {0, 0, 0};
     palpate_result result;
     if (palpate_tick(engine, poses, &budget, &result) == PALPATE_OK) {
