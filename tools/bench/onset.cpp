@@ -16,8 +16,8 @@
 // one (dropped), and whose certificates rule out the contact that is there (denied; must be 0);
 // how often misses follow each other until a contact is felt (late), for how many ticks, median,
 // 90 % and most; how deep the deepest that is missed is, as a share of delta; and of all ticks, how
-// many drew on the reserve (drawn), those of them that do not touch (in vain), and the most units
-// that a tick took. Units are exact: the same figures on every machine.
+// many drew on the reserve (drawn), those of them that do not touch (in vain), and the units that
+// they took in all, mean and most of all ticks. Units are exact: the same figures on every machine.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -119,7 +119,7 @@ struct Count {
   std::uint64_t touching = 0, missed = 0, dropped = 0, denied = 0;
   std::vector<double> late;  ///< ticks in a row
   double deepest = 0;        ///< of delta
-  std::uint64_t ticks = 0, drawn = 0, in_vain = 0, most_units = 0;
+  std::uint64_t ticks = 0, drawn = 0, in_vain = 0, drawn_units = 0, most_units = 0;
 
   void add(const Count& other) {
     touching += other.touching;
@@ -131,6 +131,7 @@ struct Count {
     ticks += other.ticks;
     drawn += other.drawn;
     in_vain += other.in_vain;
+    drawn_units += other.drawn_units;
     most_units = std::max(most_units, other.most_units);
   }
 };
@@ -168,6 +169,7 @@ Count count(Bench& bench, const std::vector<Pose>& poses, const std::vector<doub
     ++out.ticks;
     out.drawn += drew ? 1u : 0u;
     out.in_vain += drew && !touches ? 1u : 0u;
+    out.drawn_units += drew ? r.certificate.units_used : 0;
     out.most_units = std::max(out.most_units, r.certificate.units_used);
     out.touching += touches ? 1u : 0u;
     if (touches && !felt) {
@@ -187,13 +189,16 @@ Count count(Bench& bench, const std::vector<Pose>& poses, const std::vector<doub
 
 void print(const Asked& asked, const Motion& motion, const Budget& budget, const Count& found) {
   const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
+  const double drawn_mean = static_cast<double>(found.drawn_units) /
+                            static_cast<double>(std::max<std::uint64_t>(found.drawn, 1));
   std::printf(
-      "%s,%s,%g,%s,%llu,%llu,%llu,%llu,%llu,%llu,%zu,%.0f,%.0f,%.0f,%.2f,%llu,%llu,%llu,%llu\n",
+      "%s,%s,%g,%s,%llu,%llu,%llu,%llu,%llu,%llu,%zu,%.0f,%.0f,%.0f,%.2f,%llu,%llu,%llu,%.0f,%"
+      "llu\n",
       asked.a.c_str(), asked.b.c_str(), asked.delta_rel, motion.name, number(budget.units),
       number(budget.reserve_units), number(found.touching), number(found.missed),
       number(found.dropped), number(found.denied), found.late.size(), percentile(found.late, 0.5),
       percentile(found.late, 0.9), percentile(found.late, 1), found.deepest, number(found.ticks),
-      number(found.drawn), number(found.in_vain), number(found.most_units));
+      number(found.drawn), number(found.in_vain), drawn_mean, number(found.most_units));
   std::fflush(stdout);
 }
 
@@ -218,7 +223,7 @@ std::vector<Count> measure(const Pair& pair, const Motion& motion, int slides,
 void measure_all(int slides, const std::vector<Budget>& budgets, const std::vector<Asked>& all) {
   std::puts(
       "a,b,delta_rel,motion,units,reserve,touching,missed,dropped,denied,late,late_median,late_90,"
-      "late_most,deepest,ticks,drawn,in_vain,most_units");
+      "late_most,deepest,ticks,drawn,in_vain,drawn_mean,most_units");
   std::array<std::vector<Count>, std::size(kMotions)> sums;
   sums.fill(std::vector<Count>(budgets.size()));
   for (const Asked& asked : all) {
