@@ -167,12 +167,14 @@ TEST(Loop, certificates_and_contacts_are_counted) {
   VirtualLoop rig({}, for_periods(100), [&](const Pose&, const Budget&, TickResult& out) {
     out = {};
     out.certificate.truncated_by_time = ++queries % 4 == 0;
+    out.certificate.on_reserve = queries % 5 == 0;
     out.contacts = kContacts;
     return Status::ok;
   });
   const LoopReport& r = rig.run();
   EXPECT_EQ(r.queried, 100u);
   EXPECT_EQ(r.truncated, 25u);
+  EXPECT_EQ(r.on_reserve, 20u);
   EXPECT_EQ(r.contacts, 300u);
   EXPECT_EQ(r.touching, 100u);
   EXPECT_EQ(rig.records().at(3).truncated, kByTime);

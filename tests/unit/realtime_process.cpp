@@ -56,8 +56,8 @@ TEST_F(Run, json_has_every_documented_key) {
   const json j = json::parse(outcome.out);
   for (const char* key :
        {"ticks", "rate_hz", "missed", "overrun_ns_max", "latency_ns", "tick_ns", "allocations",
-        "page_faults", "truncated", "undecided", "contacts_mean", "force_N", "energy_J_min",
-        "state", "faults", "scheduler", "telemetry_dropped"}) {
+        "page_faults", "truncated", "undecided", "on_reserve", "contacts_mean", "force_N",
+        "energy_J_min", "state", "faults", "scheduler", "telemetry_dropped"}) {
     EXPECT_TRUE(j.contains(key)) << key;
   }
   for (const char* key : {"p50", "p99", "p999", "max"}) {

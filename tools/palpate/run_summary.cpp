@@ -84,6 +84,14 @@ std::string timing_lines(const LoopReport& r) {
          line("age of readings", percentiles(r.state_age)) + histograms(r);
 }
 
+std::string cut_by_budget(const LoopReport& r) {
+  std::string text = format("%.1f %% of the ticks", 100 * share(r.truncated, r.queried));
+  if (r.on_reserve > 0) {
+    text += "; " + grouped(r.on_reserve) + " went on to see whether anything touches";
+  }
+  return text;
+}
+
 std::string contact_lines(const LoopReport& r) {
   return line("contacts",
               format("%.1f a tick; touching in %.1f %% of the ticks, undecided in %.1f %%",
@@ -93,9 +101,7 @@ std::string contact_lines(const LoopReport& r) {
                               mean(r.force_N_sum, r.ticks), r.force_N_max, r.torque_Nm_max)) +
          line("energy",
               format("hand to scene %.2e J, never below %.2e J", r.energy_J, r.energy_J_min)) +
-         line("cut by budget",
-              format("%.1f %% of the ticks; %.1f %% went on to see whether anything touches",
-                     100 * share(r.truncated, r.queried), 100 * share(r.on_reserve, r.queried)));
+         line("cut by budget", cut_by_budget(r));
 }
 
 std::string host_lines(const RunOutcome& o) {
