@@ -147,7 +147,7 @@ TEST(RegionsReserve, every_pair_that_touches_is_felt) {
     const Pose one = met_at_random(gears.a.mesh, gears.b.mesh, 0.5 * Gears::kDelta, rng);
     Pose other = met_at_random(gears.a.mesh, gears.b.mesh, 0.5 * Gears::kDelta, rng);
     other.position_m += kAside;
-    // Two that are fixed in one frame, and a tool that touches one of each.
+    // Two pairs that touch, far from each other.
     const Pose poses[4] = {one, {}, other, {kAside, {}}};
     BakedScene scene({gears.a.view, gears.b.view, gears.a.view, gears.b.view}, {{0, 1}, {2, 3}},
                      {.engine = EngineKind::regions, .delta_m = Gears::kDelta});
