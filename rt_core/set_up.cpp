@@ -60,6 +60,7 @@ struct Layout {
   std::span<regions::PairFrame> frames;
   std::span<regions::Containment> containment;
   std::span<std::uint32_t> first_state, queue;
+  std::span<std::uint64_t> turns;
   std::span<regions::RegionState> regions;
   std::span<regions::Witness> witnesses;
   std::span<regions::RegionPairs> kept;
@@ -115,6 +116,7 @@ void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
   out.kept = arena.array<regions::RegionPairs>(all);
   out.active = arena.array<regions::Active>(all);
   out.queue = arena.array<std::uint32_t>(all);
+  out.turns = arena.array<std::uint64_t>(all);
   out.ways_out = arena.array<regions::WayOut>(regions::ways_out_for(all));
   out.swept = arena.array<float>(most);
   out.lasting = arena.array<double>(all);
@@ -183,6 +185,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.regions.kept = layout.kept;
   e.regions.active = layout.active;
   e.regions.queue = layout.queue;
+  e.regions.turns = layout.turns;
   e.regions.ways_out = layout.ways_out;
   e.regions.swept = layout.swept;
   e.regions.lasting = layout.lasting;

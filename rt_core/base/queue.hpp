@@ -53,12 +53,16 @@ class MinQueue {
   }
 
  private:
+  /// Which of two children is taken is not a branch: it would be guessed wrong every other time.
   void sink(std::size_t hole, const T item) noexcept {
-    while (true) {
-      std::size_t child = 2 * hole + 1;
-      if (child >= size_) break;
-      if (child + 1 < size_ && less_(storage_[child + 1], storage_[child])) ++child;
+    std::size_t child = 2 * hole + 1;
+    for (; child + 1 < size_; child = 2 * hole + 1) {
+      child += less_(storage_[child + 1], storage_[child]) ? 1u : 0u;
       if (!less_(storage_[child], item)) break;
+      storage_[hole] = storage_[child];
+      hole = child;
+    }
+    if (child + 1 == size_ && less_(storage_[child], item)) {
       storage_[hole] = storage_[child];
       hole = child;
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/narrow.hpp"
 
+#include <bit>
+#include <functional>
 #include <limits>
 
 #include "rt_core/base/queue.hpp"
@@ -58,17 +60,19 @@ constexpr float kWorthTakingUp = 0.5f;
 /// other ones in every tick.
 constexpr double kMostScouted = 200;
 
-/// Of equally urgent ones, as after a jump, neighbours are far apart in the order, so that a budget
-/// which ends early has seen something of everywhere.
-struct MoreUrgent {
-  std::span<const Active> active;
-  static std::uint32_t scattered(std::uint32_t i) noexcept { return i * 0x9e3779b1u; }
-  bool operator()(std::uint32_t a, std::uint32_t b) const noexcept {
-    const float of_a = active[a].urgency;
-    const float of_b = active[b].urgency;
-    return of_a > of_b || (of_a == of_b && scattered(a) < scattered(b));
-  }
-};
+/// The turn of an active region, the least first: the more urgent ones, and of equally urgent ones,
+/// as after a jump, neighbours far apart, so that a budget which ends early has seen something of
+/// everywhere. One number, for a queue compares many.
+constexpr std::uint32_t kScatter = 0x9e3779b1u;
+constexpr std::uint32_t kGather = 0x0e8b2f51u;
+static_assert(kScatter * kGather == 1);
+/// @param urgency  >= 0: the bits of such floats are in their order
+std::uint64_t turn_of(float urgency, std::uint32_t index) noexcept {
+  return std::uint64_t{~std::bit_cast<std::uint32_t>(urgency)} << 32 | index * kScatter;
+}
+std::uint32_t index_of(std::uint64_t turn) noexcept {
+  return static_cast<std::uint32_t>(turn) * kGather;
+}
 
 class Narrowing {
  public:
@@ -143,8 +147,9 @@ class Narrowing {
     std::uint32_t open = 0;
     double open_m = 0;
     for (std::uint32_t i = 0; i < work_.count; ++i) {
-      open_m += work_.width_m(work_.active()[i]);
-      if (work_.active()[i].width > kClosed) work_.memory.queue[open++] = i;
+      const Active& item = work_.active()[i];
+      open_m += work_.width_m(item);
+      if (item.width > kClosed) work_.memory.turns[open++] = turn_of(item.urgency, i);
     }
     count_all();
     if (open == 0 || open_m <= work_.demand.tolerance_m) return;
@@ -152,14 +157,13 @@ class Narrowing {
     if (may_lag && lags()) return;
     work_.truncated = !work_.pace.go_on();
     if (work_.truncated) return;
-    MinQueue<std::uint32_t, MoreUrgent> queue(work_.memory.queue.first(open),
-                                              MoreUrgent{work_.active()});
+    MinQueue<std::uint64_t, std::less<>> queue(work_.memory.turns.first(open));
     queue.fill();
     const bool nearly_done =
         pursuit_.searches >= kFewSearches && units_to_close() < kAtOnce * affordable();
     const bool at_once = work_.demand.limited && (work_.swept || nearly_done);
     for (std::uint32_t step = 0; !queue.empty() && open_m > work_.demand.tolerance_m; ++step) {
-      const std::uint32_t index = queue.top();
+      const std::uint32_t index = index_of(queue.top());
       Active& item = work_.active()[index];
       if (may_lag && step > 0 && step % kStepsPerLook == 0 && lags()) return;
       queue.pop();
@@ -167,7 +171,7 @@ class Narrowing {
       count_anew(item, [&] { narrow_one(index, at_once); });
       open_m += work_.width_m(item);
       if (work_.truncated) return;
-      if (item.width > kClosed) queue.push(index);
+      if (item.width > kClosed) queue.push(turn_of(item.urgency, index));
     }
   }
 

@@ -71,6 +71,7 @@ struct QueryMemory {
   std::span<RegionPairs> kept;     ///< [states]
   std::span<Active> active;        ///< [states], those of a tick in the order of their states
   std::span<std::uint32_t> queue;  ///< [states]
+  std::span<std::uint64_t> turns;  ///< [states]
   std::span<WayOut> ways_out;      ///< [ways_out_for(states)]
   std::span<float> swept;          ///< [most regions of one body]
   std::span<Contact> contacts;     ///< [limits.contacts, no more than states]
