@@ -96,10 +96,13 @@ class Meter {
     stop_units_ = budget_.units - (units < half ? units : half);
   }
 
-  /// Of units or time, where that is limited.
+  /// What lets the tick go on: of units, of time, or of both where both have ended it.
   [[nodiscard]] bool has_reserve() const noexcept {
-    return (budget_.units != kUnlimited && budget_.reserve_units > 0) ||
-           (limited_in_time() && budget_.reserve_ns > 0);
+    const bool of_units = budget_.units != kUnlimited && budget_.reserve_units > 0;
+    const bool of_time = limited_in_time() && budget_.reserve_ns > 0;
+    const bool units_do = of_units || used_ < budget_.units;
+    const bool time_does = of_time || !limited_in_time() || now_ns() < end_ns_;
+    return (of_units || of_time) && units_do && time_does;
   }
   /// It is to be had from here on, and what was held back or set aside as well; then it is gone.
   void draw_on_reserve() noexcept {

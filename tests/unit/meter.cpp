@@ -131,6 +131,24 @@ TEST(Meter, reserve_of_what_is_not_limited_is_none) {
   EXPECT_FALSE(endless.out_of_units());
 }
 
+TEST(Meter, reserve_must_be_of_what_has_ended_the_tick) {
+  SetClock clock;
+  Budget budget = clock.budget();
+  budget.units = 5;
+  budget.reserve_units = 10;
+  Meter of_units(budget, {});
+  EXPECT_TRUE(of_units.has_reserve());
+  clock.now_ns = kDeadline_ns;
+  EXPECT_FALSE(of_units.has_reserve());
+  budget.reserve_ns = kDeadline_ns;
+  EXPECT_TRUE(Meter(budget, {}).has_reserve());
+  budget.reserve_units = 0;
+  Meter of_time(budget, {});
+  EXPECT_TRUE(of_time.has_reserve());
+  of_time.charge(5);
+  EXPECT_FALSE(of_time.has_reserve());
+}
+
 TEST(Meter, tail_has_three_quarters_of_the_time_that_is_left_for_searches) {
   SetClock clock;
   Meter meter(clock.budget(), learnt(kDeadline_ns / 4));
