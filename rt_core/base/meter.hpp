@@ -100,9 +100,9 @@ class Meter {
   [[nodiscard]] bool has_reserve() const noexcept {
     const bool of_units = budget_.units != kUnlimited && budget_.reserve_units > 0;
     const bool of_time = limited_in_time() && budget_.reserve_ns > 0;
+    if (!of_units && !of_time) return false;  // no clock is read
     const bool units_do = of_units || used_ < budget_.units;
-    const bool time_does = of_time || !limited_in_time() || now_ns() < end_ns_;
-    return (of_units || of_time) && units_do && time_does;
+    return units_do && (of_time || !limited_in_time() || now_ns() < end_ns_);
   }
   /// It is to be had from here on, and what was held back or set aside as well; then it is gone.
   void draw_on_reserve() noexcept {
