@@ -6,6 +6,7 @@
 #include "rt_core/regions/kept.hpp"
 #include "rt_core/regions/motion.hpp"
 #include "rt_core/regions/scout.hpp"
+#include "rt_core/regions/survey.hpp"
 
 namespace palpate::regions {
 namespace {
@@ -24,6 +25,16 @@ constexpr double kSweptPerRegion = 0.25;
 /// Units for a first contact. Of smooth bodies nearly all are found with 50; between parts of long
 /// triangles, of which many are nearly near enough, with these.
 constexpr double kMostScouted = 600;
+/// Under a budget a tick begins anew, with what it knows, where the bodies have moved by more than
+/// this share of delta since the last one, or by more than that one if searches did not keep up
+/// with it; where so many regions are felt still, for of fewer, witnesses that climb tell more; and
+/// where searches of all that may be near take so many ticks. What is known of many is right on
+/// some sides and out of date on others, and the force, in which those weigh against each other, is
+/// off by more than where a few from everywhere are looked up.
+constexpr double kFast = 0.1;
+constexpr double kFastForSearches = 0.02;
+constexpr std::uint32_t kManyFelt = 16;
+constexpr double kMostTicks = 2;
 
 void limit_sweep(Work& work, std::size_t regions) noexcept {
   const double units = work.units_of_tick();
@@ -179,6 +190,24 @@ bool feels_any(const Work& work) noexcept {
   return false;
 }
 
+/// What a tick does for is known once a search has been completed.
+bool does_for_all(const Work& work) noexcept {
+  const Pursuit& pursuit = work.memory.pursuit;
+  const double units = work.count * pursuit.search_units;
+  return pursuit.searches > 0 && units < kMostTicks * work.units_of_tick();
+}
+
+bool is_outdated(const Work& work) noexcept {
+  if (!work.demand.limited || !can_survey(work)) return false;
+  const double fast = work.memory.pursuit.lagged ? kFastForSearches : kFast;
+  std::uint32_t felt = 0;
+  for (const Active& item : work.active()) {
+    const PairState& pair = work.pair_of(item);
+    felt += last_motion(pair) > fast * pair.delta && work.is_felt(item) ? 1u : 0u;
+  }
+  return felt >= kManyFelt && !does_for_all(work);
+}
+
 }  // namespace
 
 void gather(Work& work) noexcept {
@@ -190,6 +219,7 @@ void gather(Work& work) noexcept {
   measure_kept(work);
   thin_out(work);
   work.touching = feels_any(work);
+  work.anew = work.swept || is_outdated(work);
   work.weigh_all();
   work.widen_all();
 }

@@ -8,7 +8,6 @@
 #include "rt_core/base/queue.hpp"
 #include "rt_core/regions/close.hpp"
 #include "rt_core/regions/follow.hpp"
-#include "rt_core/regions/look.hpp"
 #include "rt_core/regions/motion.hpp"
 #include "rt_core/regions/scout.hpp"
 #include "rt_core/regions/survey.hpp"
@@ -40,7 +39,6 @@ constexpr double kUnitsToFollow = 16;
 /// is left.
 constexpr double kMostSurveyed = 0.97;
 constexpr std::uint32_t kProbes = 3;
-constexpr double kFewestToSurvey = 64;
 /// Then following takes this share of what is left, the larger where it brings witnesses nearer
 /// for the same work than searches do: by half as much, for it also keeps them there.
 constexpr double kMostFollow = 0.85;
@@ -80,13 +78,12 @@ class Narrowing {
 
   void run() noexcept {
     if (work_.demand.limited && work_.count > 0) {
-      if (work_.swept) {
-        search_or_survey();
-      } else {
-        track(work_);
+      if (!work_.anew) track(work_);
+      if (!work_.swept) {
         scout_where_none_is_felt();
         settle_suspected_sides(work_);
       }
+      if (work_.anew) search_or_survey();
     }
     begun_ = worth_taking_up();
     narrow_widest(work_.demand.limited && !lags_);
@@ -161,7 +158,7 @@ class Narrowing {
     queue.fill();
     const bool nearly_done =
         pursuit_.searches >= kFewSearches && units_to_close() < kAtOnce * affordable();
-    const bool at_once = work_.demand.limited && (work_.swept || nearly_done);
+    const bool at_once = work_.demand.limited && (work_.anew || nearly_done);
     for (std::uint32_t step = 0; !queue.empty() && open_m > work_.demand.tolerance_m; ++step) {
       const std::uint32_t index = index_of(queue.top());
       Active& item = work_.active()[index];
@@ -193,14 +190,14 @@ class Narrowing {
   /// For most of the budget where that brings witnesses nearer, else for as much as it takes to
   /// see when it does. After a jump there is nothing to see yet.
   void follow_witnesses() noexcept {
-    if (!work_.swept && pursuit_.surveyed < 1 && survey(work_, kMostSurveyed)) return;
+    if (!work_.anew && pursuit_.surveyed < 1 && survey(work_, kMostSurveyed)) return;
     const Yield& by_search = pursuit_.search;
     const Yield& by_follow = pursuit_.follow;
     const double units = affordable();
     const bool worthwhile = by_follow.gain * units > kLeastGain * by_follow.units;
     const bool better =
-        work_.swept || (worthwhile && kFollowWorth * by_follow.gain * by_search.units >
-                                          by_search.gain * by_follow.units);
+        work_.anew || (worthwhile && kFollowWorth * by_follow.gain * by_search.units >
+                                         by_search.gain * by_follow.units);
     follow(work_, (better ? kMostFollow : kLeastFollow) * units);
     work_.widen_all();
   }
@@ -209,10 +206,7 @@ class Narrowing {
   /// it. From then on it is looked up, so that a tick in contact feels some of everywhere, and the
   /// nearest are what the rest of the tick is for.
   void search_or_survey() noexcept {
-    if (!work_.pace.go_on() || work_.units_of_tick() < kFewestToSurvey ||
-        !can_look(work_.frame_of(work_.active()[0]))) {
-      return;
-    }
+    if (!work_.pace.go_on() || !can_survey(work_)) return;
     count_all();
     if (search_while_it_lasts() || !work_.pace.go_on()) return;
     lags_ = work_.followed = true;
@@ -333,7 +327,7 @@ class Narrowing {
   /// any have told what they take, what a survey has found in the ticks before is all there is to
   /// go by: it goes on, and following comes after it, where many regions are felt.
   bool lags() noexcept {
-    if (work_.swept) return lags_after_jump();
+    if (work_.anew) return lags_after_jump();
     lags_ = pursuit_.searches < kFewSearches ? pursuit_.lagged && many_are_felt()
                                              : units_to_search() > kManyTicks * affordable();
     return lags_;

@@ -9,6 +9,8 @@ namespace {
 
 /// So many regions tell a force. With fewer looks than these they meet nothing near.
 constexpr double kTelling = 64;
+/// Of a tick: where it has fewer it does not begin.
+constexpr double kFewestUnits = 64;
 constexpr double kFewestLooks = 4;
 /// More see little that is new in a region; a climb from the nearest does more.
 constexpr double kMostSpread = 14;
@@ -57,9 +59,10 @@ class Survey {
       crossing_ += work_.is_crossing(item) ? 1u : 0u;
     }
     sort_by_round();
-    const std::uint32_t before = work_.swept ? 0 : rounds_seen();
-    const std::uint32_t seen = work_.swept ? begin() : go_on(before, rounds_);
+    const std::uint32_t before = work_.anew ? 0 : rounds_seen();
+    const std::uint32_t seen = work_.anew ? begin() : go_on(before, rounds_);
     if (seen == before) return false;
+    if (work_.anew && !work_.swept) forget_unseen(seen);
     work_.memory.pursuit.surveyed = static_cast<double>(seen) / rounds_;
     work_.widen_all();
     return true;
@@ -87,6 +90,21 @@ class Survey {
       see(i % telling);
     }
     return go_on(seen, rounds_);
+  }
+
+  /// Rounds are of everywhere, each; the rest is of where the bodies were, and felt on some sides
+  /// only. What crosses does so wherever it was found.
+  void forget_unseen(std::uint32_t seen) noexcept {
+    bool felt = false;
+    for (std::uint32_t round = 0; round < seen; ++round) {
+      for (const std::uint32_t i : regions_of(round)) felt |= work_.is_felt(work_.active()[i]);
+    }
+    for (std::uint32_t round = seen; felt && round < rounds_; ++round) {
+      for (const std::uint32_t i : regions_of(round)) {
+        const Active& item = work_.active()[i];
+        if (!work_.is_crossing(item)) work_.witness_of(item) = {};
+      }
+    }
   }
 
   bool felt_can_be_searched() const noexcept {
@@ -239,6 +257,11 @@ class Survey {
 
 bool survey(Work& work, double share) noexcept {
   return work.count > 0 && Survey(work, share).run();
+}
+
+bool can_survey(const Work& work) noexcept {
+  return work.count > 0 && work.units_of_tick() >= kFewestUnits &&
+         can_look(work.frame_of(work.active()[0]));
 }
 
 }  // namespace palpate::regions

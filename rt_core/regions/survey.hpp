@@ -14,14 +14,19 @@ namespace palpate::regions {
 /// by many from one. Before others begin the first twelve are repeated up to eight times, with
 /// other places, until what is left does for searching what is felt. A round begins if there seem
 /// to be units and time for all of it. A region has four to fourteen looks in a round, as many as
-/// there are units for if 64 are to be seen. In ticks that are none after a jump, goes on where the
-/// last survey ended (Pursuit::surveyed), round by round.
+/// there are units for if 64 are to be seen. In ticks that do not begin anew (Work::anew), goes on
+/// where the last survey ended (Pursuit::surveyed), round by round. In those that do, but not after
+/// a jump, regions that it does not get to forget their witnesses, unless these cross or nothing of
+/// those it has seen is felt.
 ///
-/// Proves nothing; witnesses are at the present poses as before. Where an image cannot be looked up
-/// in, nothing. Takes the queue of the query's memory as scratch.
+/// Proves nothing; witnesses are at the present poses as before. Takes the queue of the query's
+/// memory as scratch.
 /// @param share  of the tick's units and time, within what the budget leaves
 /// @return false where no round was begun
 /// Cost: the share, plus five passes over all active regions a round, of at most 148.
 bool survey(Work& work, double share) noexcept;
+
+/// Whether images can be looked up in, and a tick has units for more than a few regions. O(1)
+[[nodiscard]] bool can_survey(const Work& work) noexcept;
 
 }  // namespace palpate::regions

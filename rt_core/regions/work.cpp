@@ -62,7 +62,7 @@ bool Work::may_climb(const Active& item) const noexcept {
 
 float Work::weight_of_unknown(const Active& item) const noexcept {
   const Witness& witness = witness_of(item);
-  const float climb = swept && may_climb(item) ? kNotClimbed : 1;
+  const float climb = anew && may_climb(item) ? kNotClimbed : 1;
   if (!witness.known()) return touching ? kNoContact : kUnseen;
   if (!is_felt(item)) return climb * kNoContact * delta_of(item) / witness.distance;
   const float depth = 1 - upper_of(item) / delta_of(item);
@@ -81,10 +81,10 @@ void Work::widen(Active& item) noexcept {
   const float upper = upper_of(item);
   item.width = upper > item.rest ? upper - (item.rest > 0 ? item.rest : 0) : 0;
   const bool unknown = is_felt(item) || !witness_of(item).known();
-  const bool may_cross = demand.limited && !swept && item.rest <= 0 && unknown;
+  const bool may_cross = demand.limited && !anew && item.rest <= 0 && unknown;
   const float doubt = may_cross ? kMayCross * delta_of(item) : 0;
   item.urgency = item.width > kClosed ? worth(item) + doubt : 0;
-  if ((swept || !touching) && demand.limited) item.urgency *= weight_of_unknown(item);
+  if ((anew || !touching) && demand.limited) item.urgency *= weight_of_unknown(item);
   if (!is_present(item)) item.urgency *= kNotFelt;
 }
 

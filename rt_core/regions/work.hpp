@@ -132,6 +132,8 @@ struct Work {
   std::uint32_t count = 0;     ///< of active regions
   std::uint32_t searches = 0;  ///< of whole regions, completed
   bool swept = false;          ///< nothing was known when the tick began (sweep.hpp)
+  bool anew = false;           ///< nothing, or what many contacts of a place that is left behind
+                               ///< tell: searches and surveys as after a jump
   bool touching = true;        ///< something is felt as the tick begins
   bool followed = false;       ///< searches did not keep up (follow.hpp)
   bool truncated = false;      ///< the budget ended refinement

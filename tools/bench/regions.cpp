@@ -19,24 +19,26 @@
 //
 // A row (CSV) for each scene, contact tolerance (relative to the radius) and mode: exact with all
 // state kept (warm) or forgotten at each tick (cold), with a tolerance of force, and under budgets
-// of time or of work units. Times are of the thread's own processor clock, so that a busy machine
-// shows in the caches only; units are those of the engine (TickResult::queries), counted and not
-// timed. without_contact counts ticks that have found none where the exact ones do, denied those of
-// them whose certificate rules one out. force_nrmse is against the exact ticks, of their largest
-// force, over all ticks but the first ten; felt_nrmse is that of the force on display, where
-// force_nrmse sums over regions; settled_* are of the second half of the ticks (settled_us: mean);
-// bound_of_force is the median of the certified error over the largest sum; exact is the share of
-// ticks whose regions' forces, sizes summed, miss no more than a micronewton, and bound_ratio the
-// median of the certified error over what they miss in the others (0: there are none); force_step
-// is the largest change of that sum from tick to tick. Where FCL is installed, its distance of the
-// same meshes (one least distance, OBBRSS) is asked between the exact ticks, pose by pose; of_fcl
-// is our time by its time, summed over the run.
+// of time or of work units; under these also with the poses in an order in which each is far from
+// the one before it, and all state kept (jump). Times are of the thread's own processor clock, so
+// that a busy machine shows in the caches only; units are those of the engine
+// (TickResult::queries), counted and not timed. without_contact counts ticks that have found none
+// where the exact ones do, denied those of them whose certificate rules one out. force_nrmse is
+// against the exact ticks, of their largest force, over all ticks but the first ten; felt_nrmse is
+// that of the force on display, where force_nrmse sums over regions; settled_* are of the second
+// half of the ticks (settled_us: mean); bound_of_force is the median of the certified error over
+// the largest sum; exact is the share of ticks whose regions' forces, sizes summed, miss no more
+// than a micronewton, and bound_ratio the median of the certified error over what they miss in the
+// others (0: there are none); force_step is the largest change of that sum from tick to tick. Where
+// FCL is installed, its distance of the same meshes (one least distance, OBBRSS) is asked between
+// the exact ticks, pose by pose; of_fcl is our time by its time, summed over the run.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -91,6 +93,17 @@ double summed_sizes(const Settings& settings, const TickResult& r) {
 }
 
 struct Run {
+  explicit Run(std::size_t ticks = 0)
+      : us(ticks),
+        contacts(ticks),
+        near(ticks),
+        units(ticks),
+        bound_N(ticks),
+        sizes_N(ticks),
+        force_N(ticks),
+        felt_N(ticks),
+        status(ticks) {}
+
   std::vector<double> us, contacts, near, units, bound_N;
   std::vector<double> settled_us;  ///< of the second half of the ticks
   std::vector<double> sizes_N;     ///< of the regions' forces, summed
@@ -118,8 +131,18 @@ struct Peer {
 double peer_us(const Peer&, const Pose&) { return 0; }
 #endif
 
+/// What the engine knows when a tick begins.
+enum class From : std::uint8_t { pose_before, nothing, far_pose };
+
+constexpr From kFroms[] = {From::pose_before, From::nothing, From::far_pose};
+
+constexpr const char* name_of(From from) {
+  constexpr const char* kNames[] = {"warm", "cold", "jump"};
+  return kNames[static_cast<std::size_t>(from)];
+}
+
 struct Plan {
-  bool cold = false;
+  From from = From::pose_before;
   double budget_us = 0;
   std::uint64_t budget_units = 0;
   double tolerance_N = 0;
@@ -132,27 +155,39 @@ Budget budget_of(const Plan& plan) {
   return budget;
 }
 
+/// From each pose to one some two fifths of them away, through all.
+std::size_t stride_of(From from, std::size_t poses) {
+  if (from != From::far_pose) return 1;
+  std::size_t stride = 2 * poses / 5;
+  while (std::gcd(stride, poses) != 1) ++stride;
+  return stride;
+}
+
+/// Whatever the order, results are in that of the poses.
 Run run(Bench& bench, const std::vector<Pose>& poses, const Plan& plan) {
-  Run out;
+  const std::size_t count = poses.size();
+  const std::size_t stride = stride_of(plan.from, count);
+  Run out(count);
   bench.forget();
-  for (const Pose& pose : poses) {
-    if (plan.cold) bench.forget();
+  for (std::size_t visited = 0; visited < count; ++visited) {
+    const std::size_t i = visited * stride % count;
+    if (plan.from == From::nothing) bench.forget();
     const std::uint64_t start = cli::processor_ns();
-    const TickResult r = bench.tick_at(pose, budget_of(plan));
-    out.us.push_back(static_cast<double>(cli::processor_ns() - start) * 1e-3);
-    if (out.us.size() > poses.size() / 2) out.settled_us.push_back(out.us.back());
-    out.contacts.push_back(static_cast<double>(r.contacts.size()));
-    out.near.push_back(static_cast<double>(r.front_nodes));
-    out.units.push_back(static_cast<double>(r.queries));
-    out.status.push_back(r.certificate.contact);
-    out.bound_N.push_back(r.certificate.force_bound_N);
-    out.sizes_N.push_back(summed_sizes(bench.settings(), r));
-    out.force_N.push_back(summed_force(bench.settings(), r));
-    out.felt_N.push_back(r.wrench.force_N);
+    const TickResult r = bench.tick_at(poses[i], budget_of(plan));
+    out.us[i] = static_cast<double>(cli::processor_ns() - start) * 1e-3;
+    out.contacts[i] = static_cast<double>(r.contacts.size());
+    out.near[i] = static_cast<double>(r.front_nodes);
+    out.units[i] = static_cast<double>(r.queries);
+    out.status[i] = r.certificate.contact;
+    out.bound_N[i] = r.certificate.force_bound_N;
+    out.sizes_N[i] = summed_sizes(bench.settings(), r);
+    out.force_N[i] = summed_force(bench.settings(), r);
+    out.felt_N[i] = r.wrench.force_N;
     if (plan.peer != nullptr) {
-      out.fcl_us += peer_us(*plan.peer, pose) / static_cast<double>(poses.size());
+      out.fcl_us += peer_us(*plan.peer, poses[i]) / static_cast<double>(count);
     }
   }
+  out.settled_us.assign(out.us.begin() + std::ptrdiff_t(count / 2), out.us.end());
   return out;
 }
 
@@ -198,7 +233,7 @@ void print_row(const char* scene, double delta_rel, const Plan& plan, const Run&
   std::printf(
       "%s,%g,%s,%g,%g,%g,%.1f,%.1f,%.1f,%.1f,%.1f,%.0f,%.0f,%.1f,%.1f,"
       "%d,%d,%.4f,%.4f,%.4f,%.4f,%.2f,%.1f,%.4f",
-      scene, delta_rel, plan.cold ? "cold" : "warm", plan.budget_us, double(plan.budget_units),
+      scene, delta_rel, name_of(plan.from), plan.budget_us, double(plan.budget_units),
       plan.tolerance_N, mean(r.us), percentile(r.us, 0.5), percentile(r.us, 0.99),
       mean(r.settled_us), percentile(r.settled_us, 0.5), mean(r.units), mean(settled), mean(r.near),
       mean(r.contacts), without_contact, denied, nrmse(r.force_N, exact.force_N, kStarted),
@@ -223,15 +258,13 @@ constexpr double kBudgets_us[] = {50, 100, 250, 500};
 /// Forgetting all, and under budgets.
 void print_plans(const SceneName& scene, double delta_rel, Bench& bench,
                  const std::vector<Pose>& poses, const Run& exact) {
-  std::vector<Plan> plans{{.cold = true}};
+  std::vector<Plan> plans{{.from = From::nothing}};
   for (const double budget_us : kBudgets_us) {
-    plans.push_back({.budget_us = budget_us});
-    plans.push_back({.cold = true, .budget_us = budget_us});
+    for (const From from : kFroms) plans.push_back({.from = from, .budget_us = budget_us});
   }
   for (const std::uint64_t units :
        {100u, 200u, 300u, 400u, 500u, 600u, 1000u, 2500u, 5000u, 10000u}) {
-    plans.push_back({.budget_units = units});
-    plans.push_back({.cold = true, .budget_units = units});
+    for (const From from : kFroms) plans.push_back({.from = from, .budget_units = units});
   }
   for (const Plan& plan : plans) {
     print_row(scene.name, delta_rel, plan, run(bench, poses, plan), exact);
@@ -293,8 +326,8 @@ void measure_paced(int ticks, const regions::Kernels& kernels) {
     bench.use(kernels);
     const Run exact = run(bench, staged.poses, {});
     for (const double budget_us : kBudgets_us) {
-      for (const bool cold : {false, true}) {
-        const Plan plan{.cold = cold, .budget_us = budget_us * host_pace(tips, tips_poses)};
+      for (const From from : kFroms) {
+        const Plan plan{.from = from, .budget_us = budget_us * host_pace(tips, tips_poses)};
         print_row(scene.name, kDeltaRel, plan, run(bench, staged.poses, plan), exact);
       }
     }
@@ -320,7 +353,7 @@ void measure_divided(const SceneName& scene, double delta_rel, int ticks,
     char name[64];
     std::snprintf(name, sizeof name, "%s_%g", scene.name, share);
     for (const Plan& plan : {Plan{}, Plan{.budget_us = 250}, Plan{.budget_units = 2500},
-                             Plan{.cold = true, .budget_units = 2500}}) {
+                             Plan{.from = From::nothing, .budget_units = 2500}}) {
       const Run found = run(bench, poses, plan);
       if (!truth) truth = found;
       print_row(name, delta_rel, plan, found, *truth);
@@ -428,13 +461,13 @@ void measure_detail(int ticks, const regions::Kernels& kernels) {
       Bench loose_bench(jaws.a, jaws.b, same.settings(Jaws::kTolerance_N));
       exact_bench.use(kernels);
       loose_bench.use(kernels);
-      for (const Plan& plan : {Plan{}, Plan{.cold = true}, Plan{.budget_units = 2500}}) {
+      for (const Plan& plan : {Plan{}, Plan{.from = From::nothing}, Plan{.budget_units = 2500}}) {
         const Run found = run(exact_bench, same.poses, plan);
         if (!truth) truth = found;
         print_row(jaws.name.c_str(), Jaws::kDeltaRel, plan, found, *truth);
       }
-      for (const bool cold : {false, true}) {
-        const Plan plan{.cold = cold, .tolerance_N = Jaws::kTolerance_N};
+      for (const From from : {From::pose_before, From::nothing}) {
+        const Plan plan{.from = from, .tolerance_N = Jaws::kTolerance_N};
         print_row(jaws.name.c_str(), Jaws::kDeltaRel, plan, run(loose_bench, same.poses, plan),
                   *truth);
       }
@@ -464,10 +497,10 @@ void measure_instructions(int ticks, const regions::Kernels&) {
   for (int turn = 0; turn < kTurns; ++turn) {
     for (std::uint32_t i = 0; i < count; ++i) {
       bench.use(*tables[i]);
-      for (const bool cold : {false, true}) {
-        const Run found = run(bench, jaws.poses, {.cold = cold});
+      for (const From from : {From::pose_before, From::nothing}) {
+        const Run found = run(bench, jaws.poses, {.from = from});
         if (!exact) exact = found;
-        print_row(tables[i]->name, kDeltaRel, {.cold = cold}, found, *exact);
+        print_row(tables[i]->name, kDeltaRel, {.from = from}, found, *exact);
       }
     }
   }
