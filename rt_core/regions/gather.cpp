@@ -25,14 +25,11 @@ constexpr double kSweptPerRegion = 0.25;
 /// Units for a first contact. Of smooth bodies nearly all are found with 50; between parts of long
 /// triangles, of which many are nearly near enough, with these.
 constexpr double kMostScouted = 600;
-/// Under a budget a tick begins anew, with what it knows, where the bodies have moved by more than
-/// this share of delta since the last one, or by more than that one if searches did not keep up
-/// with it; where so many regions are felt still, for of fewer, witnesses that climb tell more; and
-/// where searches of all that may be near take so many ticks. What is known of many is right on
-/// some sides and out of date on others, and the force, in which those weigh against each other, is
-/// off by more than where a few from everywhere are looked up.
-constexpr double kFast = 0.1;
-constexpr double kFastForSearches = 0.02;
+/// Under a budget a tick begins anew, with what it knows, where so many regions are felt still of
+/// bodies that have moved on, for of fewer, witnesses that climb tell more, and where searches of
+/// all that may be near take so many ticks. What is known of many is right on some sides and out of
+/// date on others, and the force, in which those weigh against each other, is off by more than
+/// where a few from everywhere are looked up.
 constexpr std::uint32_t kManyFelt = 16;
 constexpr double kMostTicks = 2;
 
@@ -199,11 +196,10 @@ bool does_for_all(const Work& work) noexcept {
 
 bool is_outdated(const Work& work) noexcept {
   if (!work.demand.limited || !can_survey(work)) return false;
-  const double fast = work.memory.pursuit.lagged ? kFastForSearches : kFast;
+  const bool lagged = work.memory.pursuit.lagged;
   std::uint32_t felt = 0;
   for (const Active& item : work.active()) {
-    const PairState& pair = work.pair_of(item);
-    felt += last_motion(pair) > fast * pair.delta && work.is_felt(item) ? 1u : 0u;
+    felt += work.is_felt(item) && has_moved_on(work.pair_of(item), lagged) ? 1u : 0u;
   }
   return felt >= kManyFelt && !does_for_all(work);
 }

@@ -2,6 +2,7 @@
 #include "rt_core/regions/survey.hpp"
 
 #include "rt_core/regions/look_into.hpp"
+#include "rt_core/regions/motion.hpp"
 #include "rt_core/regions/pair_batch.hpp"
 
 namespace palpate::regions {
@@ -95,6 +96,7 @@ class Survey {
   /// Rounds are of everywhere, each; the rest is of where the bodies were, and felt on some sides
   /// only. What crosses does so wherever it was found.
   void forget_unseen(std::uint32_t seen) noexcept {
+    const bool lagged = work_.memory.pursuit.lagged;
     bool felt = false;
     for (std::uint32_t round = 0; round < seen; ++round) {
       for (const std::uint32_t i : regions_of(round)) felt |= work_.is_felt(work_.active()[i]);
@@ -102,7 +104,8 @@ class Survey {
     for (std::uint32_t round = seen; felt && round < rounds_; ++round) {
       for (const std::uint32_t i : regions_of(round)) {
         const Active& item = work_.active()[i];
-        if (!work_.is_crossing(item)) work_.witness_of(item) = {};
+        if (work_.is_crossing(item) || !has_moved_on(work_.pair_of(item), lagged)) continue;
+        work_.witness_of(item) = {};
       }
     }
   }

@@ -16,8 +16,8 @@ namespace palpate::regions {
 /// to be units and time for all of it. A region has four to fourteen looks in a round, as many as
 /// there are units for if 64 are to be seen. In ticks that do not begin anew (Work::anew), goes on
 /// where the last survey ended (Pursuit::surveyed), round by round. In those that do, but not after
-/// a jump, regions that it does not get to forget their witnesses, unless these cross or nothing of
-/// those it has seen is felt.
+/// a jump, regions that it does not get to forget their witnesses, unless these cross, their bodies
+/// are slow, or nothing of what it has seen is felt.
 ///
 /// Proves nothing; witnesses are at the present poses as before. Takes the queue of the query's
 /// memory as scratch.
