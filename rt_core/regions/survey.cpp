@@ -94,19 +94,25 @@ class Survey {
   }
 
   /// Rounds are of everywhere, each; the rest is of where the bodies were, and felt on some sides
-  /// only. What crosses does so wherever it was found.
+  /// only.
   void forget_unseen(std::uint32_t seen) noexcept {
-    const bool lagged = work_.memory.pursuit.lagged;
-    bool felt = false;
-    for (std::uint32_t round = 0; round < seen; ++round) {
-      for (const std::uint32_t i : regions_of(round)) felt |= work_.is_felt(work_.active()[i]);
-    }
-    for (std::uint32_t round = seen; felt && round < rounds_; ++round) {
-      for (const std::uint32_t i : regions_of(round)) {
-        const Active& item = work_.active()[i];
-        if (work_.is_crossing(item) || !has_moved_on(work_.pair_of(item), lagged)) continue;
-        work_.witness_of(item) = {};
+    const std::span<const Active> active = work_.active();
+    std::size_t end = 0;
+    for (std::size_t first = 0; first < active.size(); first = end) {
+      bool felt = false;
+      for (end = first; end < active.size() && active[end].pair == active[first].pair; ++end) {
+        const Active& item = active[end];
+        felt |= is_open(item) && work_.is_felt(item) && round_of(item) < seen;
       }
+      const bool moved = has_moved_on(work_.pair_of(active[first]), work_.memory.pursuit.lagged);
+      if (felt && moved) forget_unseen(active.subspan(first, end - first), seen);
+    }
+  }
+  /// What crosses does so wherever it was found.
+  void forget_unseen(std::span<const Active> of_pair, std::uint32_t seen) noexcept {
+    for (const Active& item : of_pair) {
+      const bool unseen = is_open(item) && round_of(item) >= seen;
+      if (unseen && !work_.is_crossing(item)) work_.witness_of(item) = {};
     }
   }
 

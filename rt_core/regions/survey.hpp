@@ -17,7 +17,7 @@ namespace palpate::regions {
 /// there are units for if 64 are to be seen. In ticks that do not begin anew (Work::anew), goes on
 /// where the last survey ended (Pursuit::surveyed), round by round. In those that do, but not after
 /// a jump, regions that it does not get to forget their witnesses, unless these cross, their bodies
-/// are slow, or nothing of what it has seen is felt.
+/// are slow, or nothing of what it has seen of the two is felt.
 ///
 /// Proves nothing; witnesses are at the present poses as before. Takes the queue of the query's
 /// memory as scratch.
