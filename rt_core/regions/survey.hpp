@@ -19,11 +19,12 @@ namespace palpate::regions {
 /// a jump, regions that it does not get to forget their witnesses, unless these cross, their bodies
 /// are slow, or nothing of what it has seen of the two is felt.
 ///
-/// Proves nothing; witnesses are at the present poses as before. Takes the queue of the query's
-/// memory as scratch.
+/// Proves nothing; witnesses are at the present poses as before. Where an image cannot be looked up
+/// in, nothing. Takes the queue of the query's memory as scratch.
 /// @param share  of the tick's units and time, within what the budget leaves
 /// @return false where no round was begun
-/// Cost: the share, plus five passes over all active regions a round, of at most 148.
+/// Cost: the share, plus five passes over all active regions a round, of at most 148, and two to
+/// forget.
 bool survey(Work& work, double share) noexcept;
 
 /// Whether images can be looked up in, and a tick has units for more than a few regions. O(1)

@@ -255,7 +255,7 @@ struct Asked {
 
 constexpr double kBudgets_us[] = {50, 100, 250, 500};
 
-/// Forgetting all, and under budgets.
+/// Forgetting all, and under budgets, from whatever a tick may begin with.
 void print_plans(const SceneName& scene, double delta_rel, Bench& bench,
                  const std::vector<Pose>& poses, const Run& exact) {
   std::vector<Plan> plans{{.from = From::nothing}};
