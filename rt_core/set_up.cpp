@@ -86,10 +86,22 @@ std::size_t regions_of(const Scene& scene) noexcept {
   return all;
 }
 
-/// What limits ask for, but a region has one contact at most.
+/// Of components that are deep inside the other body. Where there is one in each body and one of
+/// them is, nothing else is felt.
+std::size_t leaving_of(const Scene& scene, const BodyPair& pair) noexcept {
+  const auto more_in = [&](std::uint32_t body) -> std::size_t {
+    return scene.bodies[body].header->source_components - 1;
+  };
+  return smaller(regions::kMostContained, more_in(pair.a) + more_in(pair.b));
+}
+
+/// What limits ask for, but a region has one contact at most, and so has what is deep inside.
 std::size_t contacts_for(const Scene& scene, const Limits& limits, EngineKind kind) noexcept {
   if (kind == EngineKind::levels) return limits.contacts;
-  return smaller(limits.contacts, regions_of(scene));
+  std::size_t most = 0;
+  for (const BodyPair& pair : scene.pairs)
+    most += regions_of(scene, pair) + leaving_of(scene, pair);
+  return smaller(limits.contacts, most);
 }
 
 void lay_out_levels(Arena& arena, const Scene& scene, const Limits& limits, Layout& out) noexcept {

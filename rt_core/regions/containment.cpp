@@ -172,14 +172,40 @@ bool crosses(const Work& work, std::uint32_t pair) noexcept {
   return false;
 }
 
-/// Whether some of a pair is felt; of the component that is inside the other body, where one is.
-bool is_near(const Work& work, std::uint32_t pair) noexcept {
+/// Bits of Containment::contained.
+std::uint32_t all_of(const Containment& kept) noexcept { return (1u << kept.count) - 1; }
+
+/// Those of which something is near the other's surface, and felt.
+std::uint32_t those_near(const Work& work, std::uint32_t pair) noexcept {
   const Containment& kept = work.memory.containment[pair];
+  std::uint32_t near = 0;
+  if (kept.count == 0) return near;
   for (const Active& item : work.active()) {
     if (item.pair != pair || !work.is_felt(item)) continue;
-    if (!kept.inside || is_contained(kept, work.frame_of(item), work.witness_of(item))) return true;
+    const Contained* const one = contained_of(kept, work.frame_of(item), work.witness_of(item));
+    if (one != nullptr) near |= 1u << (one - kept.contained);
+    if (near == all_of(kept)) break;
+  }
+  return near;
+}
+
+std::uint32_t those_far(const Work& work, std::uint32_t pair) noexcept {
+  return all_of(work.memory.containment[pair]) & ~those_near(work, pair);
+}
+
+/// Whether everything of a pair that is inside is felt near the surface; where nothing is inside,
+/// whether anything is felt.
+bool is_near(const Work& work, std::uint32_t pair) noexcept {
+  if (work.memory.containment[pair].count > 0) return those_far(work, pair) == 0;
+  for (const Active& item : work.active()) {
+    if (item.pair == pair && work.is_felt(item)) return true;
   }
   return false;
+}
+
+/// Calls with the place of each bit that is set.
+void for_each(std::uint32_t bits, auto call) noexcept {
+  for (; bits != 0; bits &= bits - 1) call(static_cast<std::uint32_t>(__builtin_ctz(bits)));
 }
 
 const ImageView& body_of(const levels::PairState& pair, bool of_b) noexcept {
@@ -214,34 +240,47 @@ void ask_next(Containment& kept, const levels::PairState& pair, Pace& pace) noex
   if (next != image::kNone) {
     pace.charge(1);
     ask(kept, pair, {of_b, next});
-  } else if (!of_b) {
+  } else if (!of_b && !kept.all_inside) {
     ask_first(kept, pair, true);
   } else {
     kept.asked = false;
   }
 }
 
-/// Goes on with what is asked, until something is inside, nothing is left to be asked, or the pace
-/// ends it.
-/// @return Side::unknown where a question is still open, or has no answer
-Side answer(Work& work, Containment& kept, const levels::PairState& pair) noexcept {
+void remove(Containment& kept, std::uint32_t i) noexcept {
+  kept.contained[i] = kept.contained[--kept.count];
+}
+
+/// Of the component that is asked for. One that stays inside keeps its way out.
+void note(Containment& kept, bool inside) noexcept {
+  std::uint32_t i = 0;
+  while (i < kept.count && kept.contained[i].component != kept.asking) ++i;
+  kept.all_inside &= inside;
+  if (!inside) {
+    if (i < kept.count) remove(kept, i);
+    return;
+  }
+  if (i == kMostContained) {
+    kept.unanswered = true;
+    return;
+  }
+  if (i == kept.count) kept.contained[kept.count++] = {.component = kept.asking, .nearest = {}};
+  kept.contained[i].told = true;
+}
+
+/// Goes on with what is asked, until nothing is left to be asked, or the pace ends it.
+void answer(Work& work, Containment& kept, const levels::PairState& pair) noexcept {
   while (kept.asked) {
     const bool in_time = kept.asking.first == 0 || work.pace.go_on();
-    if (!in_time) return Side::unknown;
+    if (!in_time) return;
     const ImageView& around = body_of(pair, !kept.asking.of_b);
     const Side side = side_of(*work.memory.kernels, around, kept.question, work.pace);
-    if (side == Side::inside) {
-      kept.asked = false;
-      kept.contained = kept.asking;
-      return side;
-    }
-    if (side == Side::unknown) {
-      if (kept.question.ray < kRayCount) return side;
-      kept.unanswered = true;
-    }
+    const bool unknown = side == Side::unknown;
+    if (unknown && kept.question.ray < kRayCount) return;
+    kept.unanswered |= unknown;
+    note(kept, side == Side::inside);
     ask_next(kept, pair, work.pace);
   }
-  return kept.unanswered ? Side::unknown : Side::outside;
 }
 
 /// Asks, or goes on with what has been asked, unless the bodies cross.
@@ -252,16 +291,17 @@ void settle_side(Work& work, std::uint32_t index) noexcept {
   if (!kept.asked) {
     ask_first(kept, pair, false);
     kept.doubtful = kept.unseen = kept.unanswered = false;
+    kept.all_inside = true;
+    for (Contained& one : kept.contained) one.told = false;
   }
   if (work.demand.limited && !work.swept && !work.result.on_reserve) work.limit_to(kMostAsked);
-  const Component before = kept.contained;
-  const Side side = answer(work, kept, pair);
+  answer(work, kept, pair);
   work.pace.no_limit();
   if (kept.asked) return;
-  const bool as_before = kept.inside && side == Side::inside && kept.contained == before;
-  kept.inside = side == Side::inside;
-  kept.doubtful |= side == Side::unknown;
-  if (!as_before) kept.nearest = {};  // else it still leads out, and need not be found again
+  for (std::uint32_t i = kept.count; i-- > 0;) {
+    if (!kept.contained[i].told) remove(kept, i);
+  }
+  kept.doubtful |= kept.unanswered;
 }
 
 /// Looks from the component that is inside, where it is one of several: from its first triangles.
@@ -283,9 +323,11 @@ PairFrame turned(const PairFrame& frame) noexcept {
   return {frame.b, frame.a, frame.b_to_a, frame.a_to_b, frame.scale2_b, frame.scale2_a};
 }
 
+Witness turned(const Witness& pair) noexcept { return {pair.b, pair.a, pair.distance}; }
+
 /// About the nearest pair of sixteen looks.
-Witness look_out(Work& work, const Containment& kept, const PairFrame& frame) noexcept {
-  const auto [of_b, first] = kept.contained;
+Witness look_out(Work& work, Component component, const PairFrame& frame) noexcept {
+  const auto [of_b, first] = component;
   const ImageView& body = of_b ? *frame.b : *frame.a;
   Looks looks;
   if (next_component(body, 0) == image::kNone) {
@@ -294,99 +336,108 @@ Witness look_out(Work& work, const Containment& kept, const PairFrame& frame) no
   }
   look_from_component(body, first, looks);
   if (!of_b) return nearest_of(work, frame, looks);
-  const Witness found = nearest_of(work, turned(frame), looks);
-  return {found.b, found.a, found.distance};
+  return turned(nearest_of(work, turned(frame), looks));
 }
 
-/// A pair that leads out, measured at the present poses: that of the tick before, else about the
-/// nearest of sixteen that lie apart, where there are units for it.
-void look_for_way_out(Work& work, std::uint32_t pair) noexcept {
+/// At the present poses, all pairs at once.
+/// @param which  bits of Containment::contained; those that have one
+void measure_nearest(Work& work, std::uint32_t pair, std::uint32_t which) noexcept {
   Containment& kept = work.memory.containment[pair];
-  if (!kept.inside || is_near(work, pair)) return;
+  SearchScratch& scratch = *work.memory.search;
+  Witness* of[kMostContained];
+  std::uint32_t count = 0;
+  for_each(which, [&](std::uint32_t i) {
+    Witness& nearest = kept.contained[i].nearest;
+    if (!nearest.known()) return;
+    scratch.batch_a[count] = nearest.a;
+    scratch.batch_b[count] = nearest.b;
+    of[count++] = &nearest;
+  });
+  if (count == 0) return;
+  float distances[kBatch];
+  measure(*work.memory.kernels, work.memory.frames[pair], scratch, work.pace, count, distances);
+  for (std::uint32_t k = 0; k < count; ++k) of[k]->distance = distances[k];
+}
+
+/// Of each that is inside and not near a surface a pair that leads out, measured at the present
+/// poses: that of the tick before, else about the nearest of sixteen that lie apart, where there
+/// are units for it.
+void look_for_ways_out(Work& work, std::uint32_t pair) noexcept {
+  Containment& kept = work.memory.containment[pair];
   const PairFrame& frame = work.memory.frames[pair];
-  if (kept.nearest.known()) {
-    SearchScratch& scratch = *work.memory.search;
-    scratch.batch_a[0] = kept.nearest.a;
-    scratch.batch_b[0] = kept.nearest.b;
-    float distances[kBatch];
-    measure(*work.memory.kernels, frame, scratch, work.pace, 1, distances);
-    kept.nearest.distance = distances[0];
-  } else if (can_look(frame) && can_look(turned(frame)) &&
-             work.units_left() >= static_cast<double>(kUnitsOfLooks)) {
-    kept.nearest = look_out(work, kept, frame);
-  }
+  const std::uint32_t far = those_far(work, pair);
+  measure_nearest(work, pair, far);
+  if (!can_look(frame) || !can_look(turned(frame))) return;
+  for_each(far, [&](std::uint32_t i) {
+    Contained& one = kept.contained[i];
+    const bool affordable = work.units_left() >= static_cast<double>(kUnitsOfLooks);
+    if (!one.nearest.known() && affordable) one.nearest = look_out(work, one.component, frame);
+  });
 }
 
 /// What has been asked already goes on in the next tick.
 void settle_unseen(Work& work, std::uint32_t pair) noexcept {
   if (work.memory.containment[pair].asked) return;
   settle_side(work, pair);
-  look_for_way_out(work, pair);
+  look_for_ways_out(work, pair);
 }
 
-/// Makes a witness known to the report, unless what its region feels of another component is
-/// nearer.
-void activate(Work& work, std::uint32_t pair, const Witness& witness) noexcept {
-  QueryMemory& memory = work.memory;
-  const std::uint32_t region = memory.frames[pair].a->region_triangles[witness.a].region;
-  const std::uint32_t state = memory.first_state[pair] + region;
-  bool is_active = false;
-  for (const Active& item : work.active()) {
-    if (item.state != state) continue;
-    if (work.is_felt(item)) return;
-    is_active = true;
-  }
-  memory.witnesses[state] = witness;
-  memory.crowd.absence[state] = 0;
-  if (is_active) return;
-  const auto rest = static_cast<float>(memory.pairs[pair].delta);
-  memory.active[work.count++] = {
-      .rest = rest, .way = {}, .state = state, .region = region, .pair = pair};
+bool is_of(const PairFrame& frame, Component component, const Witness& pair) noexcept {
+  const ImageView& body = component.of_b ? *frame.b : *frame.a;
+  return first_of_component(body, component.of_b ? pair.b : pair.a) == component.first;
 }
 
-/// The nearest of all pairs of triangles, or of those that the budget does for. Of regions that are
-/// nearest with another component than the one inside, none.
+/// The nearest of all pairs of a component's triangles and the other body's, or of those that the
+/// budget does for. Of regions of which another component is nearer, none.
 /// @param best  of the present poses
-Witness nearest_of_all(Work& work, std::uint32_t pair, Witness best) noexcept {
-  const Containment& kept = work.memory.containment[pair];
+Witness nearest_of_all(Work& work, std::uint32_t pair, Component component, Witness best) noexcept {
+  const bool of_b = component.of_b;
   const PairFrame& frame = work.memory.frames[pair];
-  for (std::uint32_t i = 0; i < frame.a->regions.size() && work.pace.go_on(); ++i) {
+  const PairFrame from = of_b ? turned(frame) : frame;
+  for (std::uint32_t i = 0; i < from.a->regions.size() && work.pace.go_on(); ++i) {
     const Reach reach{best.known() ? best.distance : kFarthest, 0};
     const Bounds found =
-        search(*work.memory.kernels, frame, *work.memory.search, work.pace, i, {}, reach);
-    const bool nearer = found.best.known() && found.best.distance < reach.limit;
-    if (nearer && is_contained(kept, frame, found.best)) best = found.best;
+        search(*work.memory.kernels, from, *work.memory.search, work.pace, i, {}, reach);
+    if (!found.best.known() || !(found.best.distance < reach.limit)) continue;
+    const Witness nearer = of_b ? turned(found.best) : found.best;
+    if (is_of(frame, component, nearer)) best = nearer;
   }
   return best;
 }
 
-void find_way_out(Work& work, std::uint32_t pair) noexcept {
+void find_ways_out(Work& work, std::uint32_t pair) noexcept {
   Containment& kept = work.memory.containment[pair];
+  kept.leaving = 0;
   if (crosses(work, pair)) {
-    kept.inside = kept.asked = false;
+    kept.count = 0;
+    kept.asked = false;
     kept.doubtful = true;
   }
   if (is_near(work, pair)) return;
   if (kept.unseen && work.pace.go_on()) settle_unseen(work, pair);
-  if (!kept.inside) return;
-  kept.nearest = nearest_of_all(work, pair, kept.nearest);
-  if (kept.nearest.known()) activate(work, pair, kept.nearest);
+  for_each(those_far(work, pair), [&](std::uint32_t i) {
+    Contained& one = kept.contained[i];
+    one.nearest = nearest_of_all(work, pair, one.component, one.nearest);
+    kept.leaving |= one.nearest.known() ? 1u << i : 0u;
+  });
 }
 
 }  // namespace
 
-bool is_contained(const Containment& kept, const PairFrame& frame, const Witness& pair) noexcept {
-  const bool of_b = kept.contained.of_b;
-  const ImageView& body = of_b ? *frame.b : *frame.a;
-  return kept.inside && first_of_component(body, of_b ? pair.b : pair.a) == kept.contained.first;
+const Contained* contained_of(const Containment& kept, const PairFrame& frame,
+                              const Witness& pair) noexcept {
+  for (std::uint32_t i = 0; i < kept.count; ++i) {
+    if (is_of(frame, kept.contained[i].component, pair)) return &kept.contained[i];
+  }
+  return nullptr;
 }
 
 void settle_sides(Work& work) noexcept {
   for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
     const Containment& kept = work.memory.containment[i];
-    const bool left_unseen = kept.inside && kept.unseen;
+    const bool left_unseen = kept.count > 0 && kept.unseen;
     if (kept.doubtful || kept.asked || left_unseen) settle_side(work, i);
-    look_for_way_out(work, i);
+    look_for_ways_out(work, i);
   }
 }
 
@@ -403,18 +454,20 @@ void settle_open_sides(Work& work) noexcept {
     const Containment& kept = work.memory.containment[i];
     if (!kept.is_open() || is_near(work, i)) continue;
     for (int k = 0; k < kQuestions && kept.is_open(); ++k) settle_side(work, i);
-    look_for_way_out(work, i);
+    look_for_ways_out(work, i);
   }
 }
 
 void find_ways_out(Work& work) noexcept {
-  for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) find_way_out(work, i);
+  for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) find_ways_out(work, i);
 }
 
 bool may_be_inside(const Work& work) noexcept {
   for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
     const Containment& kept = work.memory.containment[i];
-    const bool known = !kept.is_open() && (!kept.inside || kept.nearest.known());
+    bool known = !kept.is_open();
+    for_each(those_far(work, i),
+             [&](std::uint32_t k) { known &= kept.contained[k].nearest.known(); });
     if (!known && !is_near(work, i)) return true;
   }
   return false;

@@ -38,21 +38,36 @@ struct Component {
   bool operator==(const Component&) const = default;
 };
 
+/// So many components of a pair that are inside are felt, at most.
+inline constexpr std::uint32_t kMostContained = kBatch;
+
+/// A component that is inside the other body.
+struct Contained {
+  Component component;
+  Witness nearest;    ///< if it is farther than delta from the surface: the nearest
+  bool told = false;  ///< since it was last asked what is inside
+};
+
 /// What is kept of a pair from tick to tick.
 struct Containment {
-  bool inside = false;      ///< a component of one body is inside the other
-  bool doubtful = true;     ///< a jump, or surfaces that may have passed through each other since
-  bool unseen = false;      ///< that they have is not ruled out: asked when nothing is felt
-  bool suspected = false;   ///< it looks as if one were inside the other (scout.hpp)
-  bool asked = false;       ///< `question` is open, of the bodies as they were when it was asked
-  bool unanswered = false;  ///< of a component asked before, no ray has told
-  Component asking;         ///< whether its first vertex is inside the other body
-  Component contained;      ///< inside
-  SideQuestion question;    ///< until surfaces cross again its answer holds
-  Witness nearest;          ///< of `contained`, if farther than delta from the surface: the nearest
+  std::uint32_t count = 0;  ///< of components that are inside
+  Contained contained[kMostContained];
+  std::uint32_t leaving = 0;  ///< bits of `contained`: in this tick their nearest are contacts
+  bool doubtful = true;       ///< a jump, or surfaces that may have passed through each other since
+  bool unseen = false;        ///< that they have is not ruled out: asked when nothing is felt
+  bool suspected = false;     ///< it looks as if one were inside the other (scout.hpp)
+  bool asked = false;         ///< `question` is open, of the bodies as they were when it was asked
+  bool unanswered = false;    ///< of a component asked before no ray has told, or more are inside
+  bool all_inside = false;    ///< all components asked before are
+  Component asking;           ///< whether its first vertex is inside the other body
+  SideQuestion question;      ///< until surfaces cross again its answer holds
 
-  /// `inside` is as it was, and may be so no more.
+  /// What is inside is as it was, and may be so no more, and others may be inside.
   [[nodiscard]] bool is_open() const noexcept { return doubtful || unseen || asked; }
+  /// The same of one.
+  [[nodiscard]] bool is_open(const Contained& one) const noexcept {
+    return doubtful || unseen || (asked && !one.told);
+  }
 };
 
 /// On which side of a closed surface a point lies: inside where a ray from it passes through more
@@ -73,19 +88,21 @@ struct Containment {
 [[nodiscard]] bool in_sight(const Kernels& kernels, const ImageView& body, Vec3d from, Vec3d to,
                             Pace& pace) noexcept;
 
-/// Whether a pair of triangles is of the component that is inside the other body.
-[[nodiscard]] bool is_contained(const Containment& kept, const PairFrame& frame,
-                                const Witness& pair) noexcept;
+/// The component inside the other body that a pair of triangles is of; null where it is of none.
+/// O(Containment::count)
+[[nodiscard]] const Contained* contained_of(const Containment& kept, const PairFrame& frame,
+                                            const Witness& pair) noexcept;
 
-/// Settles for every pair whether one body is inside the other, where that is in doubt: where a
+/// Settles for every pair what of one body is inside the other, where that is in doubt: where a
 /// vertex of one is inside the other, the whole component is, unless they cross. Surfaces that
 /// cross have no inside to speak of, and are looked at once they have parted. Components are asked
-/// for one after another, a's before b's, until one is inside: others that are, too, are not felt
-/// before they come near a surface. Images from before 1.5 do not tell several ones apart, and are
-/// not asked for. Of what is inside and near no surface some pair is measured, about the nearest.
+/// for one after another, a's before b's, which are not asked for where all of a is inside. Beyond
+/// kMostContained that are inside at once others are not felt before they come near a surface, and
+/// the question stays open. Images from before 1.5 do not tell several ones apart, and are not
+/// asked for. Of each that is inside and near no surface some pair is measured, about the nearest.
 /// Cost: side_of(), and a unit, for each component of each pair in doubt; but at most half of what
 /// a budget has left unless the bodies have jumped, the rest in the ticks to come. Then
-/// kUnitsOfLooks.
+/// kUnitsOfLooks for each that is inside.
 void settle_sides(Work& work) noexcept;
 
 /// The same where nothing is felt and one body seems to be inside the other, as a body is that has
@@ -96,9 +113,9 @@ void settle_suspected_sides(Work& work) noexcept;
 /// the budget goes.
 void settle_open_sides(Work& work) noexcept;
 
-/// Makes the nearest pair of all an active region's witness where one body is inside the other and
-/// no region is near the surface. Where nothing is felt, and it is not proved that the bodies have
-/// not passed through each other since the tick before, it settles that first.
+/// Finds the nearest pair of all of every component that is inside and not near the surface
+/// (Containment::leaving). Where nothing is felt, and it is not proved that the bodies have not
+/// passed through each other since the tick before, it settles that first.
 /// Cost: what is left of the budget at most.
 void find_ways_out(Work& work) noexcept;
 

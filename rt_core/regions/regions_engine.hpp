@@ -74,7 +74,7 @@ struct QueryMemory {
   std::span<std::uint64_t> turns;  ///< [states]
   std::span<WayOut> ways_out;      ///< [ways_out_for(states)]
   std::span<float> swept;          ///< [most regions of one body]
-  std::span<Contact> contacts;     ///< [limits.contacts, no more than states]
+  std::span<Contact> contacts;     ///< [limits.contacts, no more than states and what is inside]
   /// [states] A bound of each region's distance and most_way_of() when it held, added: what is left
   /// of it tells far regions without their states.
   std::span<double> lasting;

@@ -25,29 +25,25 @@ class Report {
     std::uint32_t batch[kBatch];
     std::uint32_t pending = 0;
     for (std::uint32_t i = 0; i < active_.size(); ++i) {
-      const Active& item = active_[i];
-      if (work_.is_contact(item) || is_way_out(item)) {
-        batch[pending++] = i;
-      }
+      if (work_.is_contact(active_[i])) batch[pending++] = i;
       if (pending == kBatch || (i + 1 == active_.size() && pending > 0)) {
         report_batch(batch, pending);
         pending = 0;
       }
     }
+    for (std::uint32_t i = 0; i < memory_.pairs.size(); ++i) {
+      if (memory_.containment[i].leaving != 0) report_leaving(i);
+    }
     share_by_ways_out(memory_.ways_out.first(ways_out_), memory_.contacts.first(result_.contacts));
   }
 
  private:
-  bool is_way_out(const Active& item) noexcept {
-    const Containment& kept = memory_.containment[item.pair];
-    return kept.inside && kept.nearest.known() && kept.nearest.same_pair(work_.witness_of(item));
-  }
-
   void report_batch(const std::uint32_t (&batch)[kBatch], std::uint32_t count) noexcept {
     Vec3d origin[kBatch];
     TriangleLanes& lanes = memory_.search->kernel.lanes;
     for (std::uint32_t i = 0; i < kBatch; ++i) {
-      origin[i] = place(active_[batch[i < count ? i : 0]], i, lanes);
+      const Active& item = active_[batch[i < count ? i : 0]];
+      origin[i] = place(work_.pair_of(item), work_.witness_of(item), i, lanes);
     }
     WitnessLanes found;
     memory_.kernels->witnesses(memory_.search->kernel, found);
@@ -61,6 +57,37 @@ class Report {
     }
   }
 
+  /// What is deep inside a pair's other body, and the nearest way out of there.
+  void report_leaving(std::uint32_t index) noexcept {
+    const PairState& pair = memory_.pairs[index];
+    const Containment& kept = memory_.containment[index];
+    const Contained* of[kBatch];
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < kept.count; ++i) {
+      if ((kept.leaving >> i & 1u) != 0) of[count++] = &kept.contained[i];
+    }
+    Vec3d origin[kBatch];
+    TriangleLanes& lanes = memory_.search->kernel.lanes;
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      origin[i] = place(pair, of[i < count ? i : 0]->nearest, i, lanes);
+    }
+    WitnessLanes found;
+    memory_.kernels->witnesses(memory_.search->kernel, found);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Witness& nearest = of[i]->nearest;
+      const Vec3d on_a = origin[i] + lane(found.on_a, i);
+      const Vec3d apart = lane(found.apart, i);
+      const double distance = norm(apart);
+      const Vec3d normal = direction_of(pair, nearest, on_a, apart);
+      if (kept.is_open(*of[i])) leave_open(pair, distance);
+      result_.open_m += pair.deviation * pair.unit_m;
+      add(index, 1,
+          {on_a, on_a - apart, distance > kTouching ? -normal : normal, -distance,
+           pair.image_a->region_triangles[nearest.a].piece,
+           pair.image_b->region_triangles[nearest.b].piece});
+    }
+  }
+
   static Vec3d lane(const float (&rows)[3][kBatch], std::uint32_t i) noexcept {
     return {static_cast<double>(rows[0][i]), static_cast<double>(rows[1][i]),
             static_cast<double>(rows[2][i])};
@@ -68,9 +95,8 @@ class Report {
 
   /// The witness's triangles in the coordinates of a, relative to a corner that is returned: in
   /// double up to there, so that only the size of the pair is rounded.
-  Vec3d place(const Active& item, std::uint32_t i, TriangleLanes& lanes) noexcept {
-    const PairState& pair = work_.pair_of(item);
-    const Witness& witness = work_.witness_of(item);
+  static Vec3d place(const PairState& pair, const Witness& witness, std::uint32_t i,
+                     TriangleLanes& lanes) noexcept {
     const RegionTriangle& a = pair.image_a->region_triangles[witness.a];
     const RegionTriangle& b = pair.image_b->region_triangles[witness.b];
     const Vec3d origin = corner(a, 0, pair.scale_a);
@@ -93,18 +119,23 @@ class Report {
     const PairState& pair = work_.pair_of(item);
     const Witness& witness = work_.witness_of(item);
     const double distance = norm(apart);
-    // Touching, the outward normal of b's is right whichever side a comes from.
-    const Vec3d normal =
-        distance > kTouching ? (1 / distance) * apart : facing_at(pair, witness.b, on_a);
+    const Vec3d normal = direction_of(pair, witness, on_a, apart);
     const Containment& kept = memory_.containment[item.pair];
-    const bool contained = is_contained(kept, work_.frame_of(item), witness);
+    const Contained* const inside = contained_of(kept, work_.frame_of(item), witness);
     const bool flip =
-        distance > kTouching && (contained || is_behind(item, on_a, on_a - apart, normal));
-    if (flip && contained && kept.is_open()) leave_open(pair, distance);
+        distance > kTouching && (inside != nullptr || is_behind(item, on_a, on_a - apart, normal));
+    if (flip && inside != nullptr && kept.is_open(*inside)) leave_open(pair, distance);
     const Felt felt = flip ? Felt{-normal, 1} : at_border(item, on_a, on_a - apart, normal);
     add(item, {on_a, on_a - apart, felt.normal, flip ? -distance : distance,
                pair.image_a->region_triangles[witness.a].piece,
                pair.image_b->region_triangles[witness.b].piece, felt.share});
+  }
+
+  /// From b to a. Touching, the outward normal of b's is right whichever side a comes from.
+  static Vec3d direction_of(const PairState& pair, const Witness& witness, Vec3d on_a,
+                            Vec3d apart) noexcept {
+    const double distance = norm(apart);
+    return distance > kTouching ? (1 / distance) * apart : facing_at(pair, witness.b, on_a);
   }
 
   /// It may be as far from b's surface on the outer side.
@@ -276,7 +307,11 @@ class Report {
   };
 
   void add(const Active& item, const Found& found) noexcept {
-    const PairState& pair = work_.pair_of(item);
+    add(item.pair, memory_.crowd.presence(item.state), found);
+  }
+  /// @param presence  Crowd::presence()
+  void add(std::uint32_t index, double presence, const Found& found) noexcept {
+    const PairState& pair = memory_.pairs[index];
     if (result_.contacts == memory_.contacts.size()) {
       result_.truncated_by_memory = true;
       return;
@@ -287,9 +322,9 @@ class Report {
     out.centre_m = 0.5 * (out.point_a_m + out.point_b_m);
     out.normal = pair.rotation_a * found.normal;
     out.distance_m = found.distance * pair.unit_m;
-    out.share = found.share * memory_.crowd.presence(item.state);
+    out.share = found.share * presence;
     out.weight = 0;
-    out.pair = item.pair;
+    out.pair = index;
     out.piece_a = found.piece_a;
     out.level_a = 0;
     out.piece_b = found.piece_b;

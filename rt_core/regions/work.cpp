@@ -52,7 +52,9 @@ bool Work::may_touch_unfelt(std::uint32_t pair) const noexcept {
 
 void Work::leave_for_report(std::uint64_t felt, std::uint64_t crossing) noexcept {
   const double listing = static_cast<double>(crossing) * memory.pursuit.listing_units;
-  meter.expect_contacts(tail_contacts(felt, crossing));
+  std::uint64_t inside = 0;
+  for (const Containment& kept : memory.containment) inside += kept.count;
+  meter.expect_contacts(tail_contacts(felt + inside, crossing));
   meter.set_aside(static_cast<std::uint64_t>(listing));
 }
 

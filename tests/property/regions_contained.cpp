@@ -2,7 +2,9 @@
 // One body wholly inside another: no triangles cross, and yet they overlap.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 
@@ -285,6 +287,81 @@ TEST(RegionsContained, component_of_a_body_is_pushed_out_by_itself) {
       }
     }
   }
+}
+
+/// Balls in a row, one body; each of them ever a little deeper inside a box than the one before.
+class Row {
+ public:
+  explicit Row(int balls) : large_(box(1, 1, 1), kRegions) {
+    bake::Mesh row;
+    for (int i = 0; i < balls; ++i) {
+      at_.push_back({0.9 - 1.8 * (i + 0.5) / balls, 0.01, -0.002 * i});
+      const bake::Mesh one = shifted(ball(6, 8, 0.4 / balls), at_.back());
+      row = i > 0 ? together(row, one) : one;
+    }
+    row_ = std::make_unique<BakedBody>(row, kRegions);
+  }
+
+  [[nodiscard]] BakedScene scene(bool row_moves) const {
+    const ImageView views[] = {row_->view, large_.view};
+    return {{views[row_moves ? 0 : 1], views[row_moves ? 1 : 0]}, {{0, 1}}, settings()};
+  }
+
+  /// How many are felt whose centres lie deeper than delta: each by one contact, whose distance is
+  /// less than that of the centre by no more than the ball is wide.
+  [[nodiscard]] int felt(const TickResult& r, bool row_moves, Vec3d by) const {
+    int felt = 0;
+    for (const Contact& c : r.contacts) {
+      const Vec3d inside = (row_moves ? c.point_a_m : c.point_b_m) - (row_moves ? by : Vec3d{});
+      const auto is_near = [&](Vec3d ball_at) {
+        return norm(inside - ball_at) < 0.45 / static_cast<double>(at_.size());
+      };
+      felt += c.distance_m < -kDelta ? static_cast<int>(std::ranges::count_if(at_, is_near)) : 0;
+    }
+    return felt;
+  }
+
+ private:
+  BakedBody large_;
+  std::vector<Vec3d> at_;
+  std::unique_ptr<BakedBody> row_;
+};
+
+TEST(RegionsContained, all_components_that_are_inside_are_felt) {
+  constexpr int kBalls = 3;
+  const Row row(kBalls);
+  for (const std::uint64_t units : {Budget{}.units, std::uint64_t{1000}, std::uint64_t{300}}) {
+    for (const bool row_moves : {true, false}) {
+      SCOPED_TRACE(std::to_string(units) + " units" + (row_moves ? ", moving" : ", still"));
+      BakedScene scene = row.scene(row_moves);
+      const auto tick = [&](Vec3d by) {
+        const Pose poses[2] = {{row_moves ? by : -by, {}}, {}};
+        return tick_or_fail(*scene.engine, poses, {.units = units});
+      };
+      const Vec3d deep{0, 0, 0.7};
+      TickResult r = tick(deep);
+      for (int i = 0; i < 4; ++i) r = tick(deep);
+      EXPECT_EQ(row.felt(r, row_moves, deep), kBalls);
+      EXPECT_EQ(r.contacts.size(), static_cast<std::size_t>(kBalls));
+      EXPECT_GT(r.wrench.force_N.z * (row_moves ? 1 : -1), 0);
+      EXPECT_NEAR(r.wrench.torque_Nm.y, 0, 0.2 * norm(r.wrench.force_N));
+      // One after another they leave the box at its side.
+      const Vec3d two = deep + Vec3d{0.6, 0, 0};
+      for (int i = 0; i < 4; ++i) r = tick(two);
+      EXPECT_EQ(row.felt(r, row_moves, two), kBalls - 1);
+      EXPECT_TRUE(tick({0, 0, 1.5}).contacts.empty());
+    }
+  }
+}
+
+TEST(RegionsContained, more_components_inside_than_there_is_room_for_leave_the_question_open) {
+  constexpr int kBalls = regions::kMostContained + 4;
+  const Row row(kBalls);
+  BakedScene scene = row.scene(true);
+  const TickResult r = tick_at(scene, {0, 0, 0.5});
+  EXPECT_EQ(row.felt(r, true, {0, 0, 0.5}), static_cast<int>(regions::kMostContained));
+  EXPECT_GT(r.certificate.error_bound_m, kDelta);
+  EXPECT_TRUE(tick_at(scene, {0, 0, 1.5}).contacts.empty());
 }
 
 TEST(RegionsContained, component_beside_the_one_inside_stays_outside) {
