@@ -165,12 +165,48 @@ namespace {
 /// touch elsewhere.
 constexpr double kMostAsked = 0.5;
 
-bool crosses(const Work& work, std::uint32_t pair) noexcept {
-  for (const Active& item : work.active()) {
-    if (item.pair == pair && work.is_crossing(item)) return true;
-  }
-  return false;
+bool is_of(const PairFrame& frame, Component component, const Witness& pair) noexcept {
+  const ImageView& body = component.of_b ? *frame.b : *frame.a;
+  return first_of_component(body, component.of_b ? pair.b : pair.a) == component.first;
 }
+
+/// Which components of a pair cross the other body, as far as witnesses tell.
+class Crossing {
+ public:
+  Crossing(const Work& work, std::uint32_t pair) noexcept : frame_(work.memory.frames[pair]) {
+    for (const Active& item : work.active()) {
+      if (item.pair == pair && work.is_crossing(item)) note(work.witness_of(item));
+    }
+  }
+
+  [[nodiscard]] bool any() const noexcept { return count_ > 0; }
+
+  /// True of all where there are more than there is room for.
+  [[nodiscard]] bool of(Component component) const noexcept {
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      if (is_of(frame_, component, pairs_[i])) return true;
+    }
+    return full_;
+  }
+
+ private:
+  static constexpr std::uint32_t kMost = 32;  // pairs of components
+
+  void note(const Witness& pair) noexcept {
+    const Component a{false, first_of_component(*frame_.a, pair.a)};
+    const Component b{true, first_of_component(*frame_.b, pair.b)};
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      if (is_of(frame_, a, pairs_[i]) && is_of(frame_, b, pairs_[i])) return;
+    }
+    full_ = full_ || count_ == kMost;
+    if (!full_) pairs_[count_++] = pair;
+  }
+
+  const PairFrame& frame_;
+  Witness pairs_[kMost];
+  std::uint32_t count_ = 0;
+  bool full_ = false;
+};
 
 /// Bits of Containment::contained.
 std::uint32_t all_of(const Containment& kept) noexcept { return (1u << kept.count) - 1; }
@@ -268,13 +304,18 @@ void note(Containment& kept, bool inside) noexcept {
   kept.contained[i].told = true;
 }
 
-/// Goes on with what is asked, until nothing is left to be asked, or the pace ends it.
-void answer(Work& work, Containment& kept, const levels::PairState& pair) noexcept {
+/// Goes on with what is asked, until nothing is left to be asked, or the pace ends it. What crosses
+/// is not inside.
+void answer(Work& work, Containment& kept, std::uint32_t index) noexcept {
+  const levels::PairState& pair = work.memory.pairs[index];
+  const Crossing crossing(work, index);
   while (kept.asked) {
     const bool in_time = kept.asking.first == 0 || work.pace.go_on();
     if (!in_time) return;
     const ImageView& around = body_of(pair, !kept.asking.of_b);
-    const Side side = side_of(*work.memory.kernels, around, kept.question, work.pace);
+    const Side side = crossing.of(kept.asking)
+                          ? Side::outside
+                          : side_of(*work.memory.kernels, around, kept.question, work.pace);
     const bool unknown = side == Side::unknown;
     if (unknown && kept.question.ray < kRayCount) return;
     kept.unanswered |= unknown;
@@ -283,19 +324,18 @@ void answer(Work& work, Containment& kept, const levels::PairState& pair) noexce
   }
 }
 
-/// Asks, or goes on with what has been asked, unless the bodies cross.
+/// Asks, or goes on with what has been asked.
 void settle_side(Work& work, std::uint32_t index) noexcept {
   const levels::PairState& pair = work.memory.pairs[index];
   Containment& kept = work.memory.containment[index];
-  if (crosses(work, index)) return;
   if (!kept.asked) {
     ask_first(kept, pair, false);
-    kept.doubtful = kept.unseen = kept.unanswered = false;
+    kept.doubtful = kept.unseen = kept.unanswered = kept.crossed = false;
     kept.all_inside = true;
     for (Contained& one : kept.contained) one.told = false;
   }
   if (work.demand.limited && !work.swept && !work.result.on_reserve) work.limit_to(kMostAsked);
-  answer(work, kept, pair);
+  answer(work, kept, index);
   work.pace.no_limit();
   if (kept.asked) return;
   for (std::uint32_t i = kept.count; i-- > 0;) {
@@ -382,11 +422,6 @@ void settle_unseen(Work& work, std::uint32_t pair) noexcept {
   look_for_ways_out(work, pair);
 }
 
-bool is_of(const PairFrame& frame, Component component, const Witness& pair) noexcept {
-  const ImageView& body = component.of_b ? *frame.b : *frame.a;
-  return first_of_component(body, component.of_b ? pair.b : pair.a) == component.first;
-}
-
 /// The nearest of all pairs of a component's triangles and the other body's, or of those that the
 /// budget does for. Of regions of which another component is nearer, none.
 /// @param best  of the present poses
@@ -408,10 +443,14 @@ Witness nearest_of_all(Work& work, std::uint32_t pair, Component component, Witn
 void find_ways_out(Work& work, std::uint32_t pair) noexcept {
   Containment& kept = work.memory.containment[pair];
   kept.leaving = 0;
-  if (crosses(work, pair)) {
-    kept.count = 0;
+  const Crossing crossing(work, pair);
+  if (crossing.any()) {
+    for (std::uint32_t i = kept.count; i-- > 0;) {
+      if (crossing.of(kept.contained[i].component)) remove(kept, i);
+    }
+    kept.doubtful |= kept.asked;
     kept.asked = false;
-    kept.doubtful = true;
+    kept.crossed = true;
   }
   if (is_near(work, pair)) return;
   if (kept.unseen && work.pace.go_on()) settle_unseen(work, pair);
@@ -436,7 +475,7 @@ void settle_sides(Work& work) noexcept {
   for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
     const Containment& kept = work.memory.containment[i];
     const bool left_unseen = kept.count > 0 && kept.unseen;
-    if (kept.doubtful || kept.asked || left_unseen) settle_side(work, i);
+    if (kept.doubtful || kept.crossed || kept.asked || left_unseen) settle_side(work, i);
     look_for_ways_out(work, i);
   }
 }

@@ -55,6 +55,7 @@ struct Containment {
   std::uint32_t leaving = 0;  ///< bits of `contained`: in this tick their nearest are contacts
   bool doubtful = true;       ///< a jump, or surfaces that may have passed through each other since
   bool unseen = false;        ///< that they have is not ruled out: asked when nothing is felt
+  bool crossed = false;       ///< in the tick before, what may have parted since
   bool suspected = false;     ///< it looks as if one were inside the other (scout.hpp)
   bool asked = false;         ///< `question` is open, of the bodies as they were when it was asked
   bool unanswered = false;    ///< of a component asked before no ray has told, or more are inside
@@ -94,14 +95,14 @@ struct Containment {
                                             const Witness& pair) noexcept;
 
 /// Settles for every pair what of one body is inside the other, where that is in doubt: where a
-/// vertex of one is inside the other, the whole component is, unless they cross. Surfaces that
-/// cross have no inside to speak of, and are looked at once they have parted. Components are asked
-/// for one after another, a's before b's, which are not asked for where all of a is inside. Beyond
-/// kMostContained that are inside at once others are not felt before they come near a surface, and
-/// the question stays open. Images from before 1.5 do not tell several ones apart, and are not
-/// asked for. Of each that is inside and near no surface some pair is measured, about the nearest.
-/// Cost: side_of(), and a unit, for each component of each pair in doubt; but at most half of what
-/// a budget has left unless the bodies have jumped, the rest in the ticks to come. Then
+/// vertex of one is inside the other, the whole component is, unless it crosses it: what does is
+/// asked for once they have parted, and what is inside beside it in every tick. Components are
+/// asked for one after another, a's before b's, which are not asked for where all of a is inside.
+/// Beyond kMostContained that are inside at once others are not felt before they come near a
+/// surface, and the question stays open. Images from before 1.5 do not tell several ones apart, and
+/// are not asked for. Of each that is inside and near no surface some pair is measured, about the
+/// nearest. Cost: side_of(), and a unit, for each component of each pair in doubt; but at most half
+/// of what a budget has left unless the bodies have jumped, the rest in the ticks to come. Then
 /// kUnitsOfLooks for each that is inside.
 void settle_sides(Work& work) noexcept;
 

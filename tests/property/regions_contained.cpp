@@ -354,6 +354,39 @@ TEST(RegionsContained, all_components_that_are_inside_are_felt) {
   }
 }
 
+/// The last ball goes out through the box's side; that it crosses that does not end what the others
+/// feel.
+TEST(RegionsContained, components_inside_are_felt_beside_one_that_crosses) {
+  constexpr int kBalls = 3;
+  constexpr double kStep = 0.25 * kDelta;
+  const Row row(kBalls);
+  for (const std::uint64_t units : {Budget{}.units, std::uint64_t{2000}}) {
+    for (const bool row_moves : {true, false}) {
+      SCOPED_TRACE(std::to_string(units) + " units" + (row_moves ? ", moving" : ", still"));
+      BakedScene scene = row.scene(row_moves);
+      const auto tick = [&](Vec3d by) {
+        const Pose poses[2] = {{row_moves ? by : -by, {}}, {}};
+        return tick_or_fail(*scene.engine, poses, {.units = units});
+      };
+      Vec3d by{0, 0, 0.6};
+      for (int i = 0; i < 4; ++i) tick(by);
+      int crossed = 0;
+      double before_N = 0;
+      for (; by.x < 0.6; by.x += kStep) {
+        const TickResult r = tick(by);
+        const int deep = row.felt(r, row_moves, by);
+        ASSERT_GE(deep, kBalls - 1) << by.x;
+        const double up_N = r.wrench.force_N.z * (row_moves ? 1 : -1);
+        const bool jumps = by.x > 0 && std::abs(up_N - before_N) > 0.1 * before_N;
+        EXPECT_FALSE(jumps) << by.x << ": " << before_N << " N, then " << up_N;
+        before_N = up_N;
+        crossed += r.contacts.size() > static_cast<std::size_t>(deep) ? 1 : 0;
+      }
+      EXPECT_GT(crossed, 10);
+    }
+  }
+}
+
 TEST(RegionsContained, more_components_inside_than_there_is_room_for_leave_the_question_open) {
   constexpr int kBalls = regions::kMostContained + 4;
   const Row row(kBalls);
