@@ -99,8 +99,9 @@ std::size_t leaving_of(const Scene& scene, const BodyPair& pair) noexcept {
 std::size_t contacts_for(const Scene& scene, const Limits& limits, EngineKind kind) noexcept {
   if (kind == EngineKind::levels) return limits.contacts;
   std::size_t most = 0;
-  for (const BodyPair& pair : scene.pairs)
+  for (const BodyPair& pair : scene.pairs) {
     most += regions_of(scene, pair) + leaving_of(scene, pair);
+  }
   return smaller(limits.contacts, most);
 }
 

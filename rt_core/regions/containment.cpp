@@ -171,9 +171,10 @@ bool is_of(const PairFrame& frame, Component component, const Witness& pair) noe
 }
 
 /// Which components of a pair cross the other body, as far as witnesses tell.
-class Crossing {
+class CrossingComponents {
  public:
-  Crossing(const Work& work, std::uint32_t pair) noexcept : frame_(work.memory.frames[pair]) {
+  CrossingComponents(const Work& work, std::uint32_t pair) noexcept
+      : frame_(work.memory.frames[pair]) {
     for (const Active& item : work.active()) {
       if (item.pair == pair && work.is_crossing(item)) note(work.witness_of(item));
     }
@@ -308,7 +309,7 @@ void note(Containment& kept, bool inside) noexcept {
 /// is not inside.
 void answer(Work& work, Containment& kept, std::uint32_t index) noexcept {
   const levels::PairState& pair = work.memory.pairs[index];
-  const Crossing crossing(work, index);
+  const CrossingComponents crossing(work, index);
   while (kept.asked) {
     const bool in_time = kept.asking.first == 0 || work.pace.go_on();
     if (!in_time) return;
@@ -443,7 +444,7 @@ Witness nearest_of_all(Work& work, std::uint32_t pair, Component component, Witn
 void find_ways_out(Work& work, std::uint32_t pair) noexcept {
   Containment& kept = work.memory.containment[pair];
   kept.leaving = 0;
-  const Crossing crossing(work, pair);
+  const CrossingComponents crossing(work, pair);
   if (crossing.any()) {
     for (std::uint32_t i = kept.count; i-- > 0;) {
       if (crossing.of(kept.contained[i].component)) remove(kept, i);

@@ -80,7 +80,7 @@ class Report {
       const double distance = norm(apart);
       const Vec3d normal = direction_of(pair, nearest, on_a, apart);
       if (kept.is_open(*of[i])) leave_open(pair, distance);
-      result_.open_m += pair.deviation * pair.unit_m;
+      result_.open_m += pair.deviation * pair.unit_m;  // as of what is not felt (certify.cpp)
       add(index, 1,
           {on_a, on_a - apart, distance > kTouching ? -normal : normal, -distance,
            pair.image_a->region_triangles[nearest.a].piece,

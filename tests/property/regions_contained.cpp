@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -289,7 +290,7 @@ TEST(RegionsContained, component_of_a_body_is_pushed_out_by_itself) {
   }
 }
 
-/// Balls in a row, one body; each of them ever a little deeper inside a box than the one before.
+/// Balls in a row, one body, each a little lower than the one before, and a box that they go into.
 class Row {
  public:
   explicit Row(int balls) : large_(box(1, 1, 1), kRegions) {
@@ -307,8 +308,25 @@ class Row {
     return {{views[row_moves ? 0 : 1], views[row_moves ? 1 : 0]}, {{0, 1}}, settings()};
   }
 
-  /// How many are felt whose centres lie deeper than delta: each by one contact, whose distance is
-  /// less than that of the centre by no more than the ball is wide.
+  /// Calls with a tick for each of some budgets, and with the row and the box as what moves.
+  /// @param call  called as call(tick, row_moves); tick(by): of the row by so much off the box
+  void with_each(std::initializer_list<std::uint64_t> budgets, auto call) const {
+    for (const std::uint64_t units : budgets) {
+      for (const bool row_moves : {true, false}) {
+        SCOPED_TRACE(std::to_string(units) + " units" + (row_moves ? ", moving" : ", still"));
+        BakedScene both = scene(row_moves);
+        call(
+            [&](Vec3d by) {
+              const Pose poses[2] = {{row_moves ? by : -by, {}}, {}};
+              return tick_or_fail(*both.engine, poses, {.units = units});
+            },
+            row_moves);
+      }
+    }
+  }
+
+  /// How many balls are felt deeper than delta, by one contact each.
+  /// @param by  of the row off the box
   [[nodiscard]] int felt(const TickResult& r, bool row_moves, Vec3d by) const {
     int felt = 0;
     for (const Contact& c : r.contacts) {
@@ -330,28 +348,20 @@ class Row {
 TEST(RegionsContained, all_components_that_are_inside_are_felt) {
   constexpr int kBalls = 3;
   const Row row(kBalls);
-  for (const std::uint64_t units : {Budget{}.units, std::uint64_t{1000}, std::uint64_t{300}}) {
-    for (const bool row_moves : {true, false}) {
-      SCOPED_TRACE(std::to_string(units) + " units" + (row_moves ? ", moving" : ", still"));
-      BakedScene scene = row.scene(row_moves);
-      const auto tick = [&](Vec3d by) {
-        const Pose poses[2] = {{row_moves ? by : -by, {}}, {}};
-        return tick_or_fail(*scene.engine, poses, {.units = units});
-      };
-      const Vec3d deep{0, 0, 0.7};
-      TickResult r = tick(deep);
-      for (int i = 0; i < 4; ++i) r = tick(deep);
-      EXPECT_EQ(row.felt(r, row_moves, deep), kBalls);
-      EXPECT_EQ(r.contacts.size(), static_cast<std::size_t>(kBalls));
-      EXPECT_GT(r.wrench.force_N.z * (row_moves ? 1 : -1), 0);
-      EXPECT_NEAR(r.wrench.torque_Nm.y, 0, 0.2 * norm(r.wrench.force_N));
-      // One after another they leave the box at its side.
-      const Vec3d two = deep + Vec3d{0.6, 0, 0};
-      for (int i = 0; i < 4; ++i) r = tick(two);
-      EXPECT_EQ(row.felt(r, row_moves, two), kBalls - 1);
-      EXPECT_TRUE(tick({0, 0, 1.5}).contacts.empty());
-    }
-  }
+  row.with_each({Budget{}.units, 1000, 300}, [&](auto tick, bool row_moves) {
+    const Vec3d deep{0, 0, 0.7};
+    TickResult r = tick(deep);
+    for (int i = 0; i < 4; ++i) r = tick(deep);
+    EXPECT_EQ(row.felt(r, row_moves, deep), kBalls);
+    EXPECT_EQ(r.contacts.size(), static_cast<std::size_t>(kBalls));
+    EXPECT_GT(r.wrench.force_N.z * (row_moves ? 1 : -1), 0);
+    EXPECT_NEAR(r.wrench.torque_Nm.y, 0, 0.2 * norm(r.wrench.force_N));
+    // One of them leaves the box at its side.
+    const Vec3d aside = deep + Vec3d{0.6, 0, 0};
+    for (int i = 0; i < 4; ++i) r = tick(aside);
+    EXPECT_EQ(row.felt(r, row_moves, aside), kBalls - 1);
+    EXPECT_TRUE(tick({0, 0, 1.5}).contacts.empty());
+  });
 }
 
 /// The last ball goes out through the box's side; that it crosses that does not end what the others
@@ -360,31 +370,23 @@ TEST(RegionsContained, components_inside_are_felt_beside_one_that_crosses) {
   constexpr int kBalls = 3;
   constexpr double kStep = 0.25 * kDelta;
   const Row row(kBalls);
-  for (const std::uint64_t units : {Budget{}.units, std::uint64_t{2000}}) {
-    for (const bool row_moves : {true, false}) {
-      SCOPED_TRACE(std::to_string(units) + " units" + (row_moves ? ", moving" : ", still"));
-      BakedScene scene = row.scene(row_moves);
-      const auto tick = [&](Vec3d by) {
-        const Pose poses[2] = {{row_moves ? by : -by, {}}, {}};
-        return tick_or_fail(*scene.engine, poses, {.units = units});
-      };
-      Vec3d by{0, 0, 0.6};
-      for (int i = 0; i < 4; ++i) tick(by);
-      int crossed = 0;
-      double before_N = 0;
-      for (; by.x < 0.6; by.x += kStep) {
-        const TickResult r = tick(by);
-        const int deep = row.felt(r, row_moves, by);
-        ASSERT_GE(deep, kBalls - 1) << by.x;
-        const double up_N = r.wrench.force_N.z * (row_moves ? 1 : -1);
-        const bool jumps = by.x > 0 && std::abs(up_N - before_N) > 0.1 * before_N;
-        EXPECT_FALSE(jumps) << by.x << ": " << before_N << " N, then " << up_N;
-        before_N = up_N;
-        crossed += r.contacts.size() > static_cast<std::size_t>(deep) ? 1 : 0;
-      }
-      EXPECT_GT(crossed, 10);
+  row.with_each({Budget{}.units, 2000}, [&](auto tick, bool row_moves) {
+    Vec3d by{0, 0, 0.6};
+    for (int i = 0; i < 4; ++i) tick(by);
+    int crossed = 0;
+    double before_N = 0;
+    for (; by.x < 0.6; by.x += kStep) {
+      const TickResult r = tick(by);
+      const int deep = row.felt(r, row_moves, by);
+      ASSERT_GE(deep, kBalls - 1) << by.x;
+      const double up_N = r.wrench.force_N.z * (row_moves ? 1 : -1);
+      const bool jumps = by.x > 0 && std::abs(up_N - before_N) > 0.1 * before_N;
+      EXPECT_FALSE(jumps) << by.x << ": " << before_N << " N, then " << up_N;
+      before_N = up_N;
+      crossed += r.contacts.size() > static_cast<std::size_t>(deep) ? 1 : 0;
     }
-  }
+    EXPECT_GT(crossed, 10);
+  });
 }
 
 TEST(RegionsContained, more_components_inside_than_there_is_room_for_leave_the_question_open) {
