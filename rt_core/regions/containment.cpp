@@ -209,6 +209,11 @@ class CrossingComponents {
   bool full_ = false;
 };
 
+/// Calls with the place of each bit that is set.
+void for_each(std::uint32_t bits, auto call) noexcept {
+  for (; bits != 0; bits &= bits - 1) call(static_cast<std::uint32_t>(__builtin_ctz(bits)));
+}
+
 /// Bits of Containment::contained.
 std::uint32_t all_of(const Containment& kept) noexcept { return (1u << kept.count) - 1; }
 
@@ -230,19 +235,38 @@ std::uint32_t those_far(const Work& work, std::uint32_t pair) noexcept {
   return all_of(work.memory.containment[pair]) & ~those_near(work, pair);
 }
 
-/// Whether everything of a pair that is inside is felt near the surface; where nothing is inside,
-/// whether anything is felt.
-bool is_near(const Work& work, std::uint32_t pair) noexcept {
-  if (work.memory.containment[pair].count > 0) return those_far(work, pair) == 0;
+bool feels_any(const Work& work, std::uint32_t pair) noexcept {
   for (const Active& item : work.active()) {
     if (item.pair == pair && work.is_felt(item)) return true;
   }
   return false;
 }
 
-/// Calls with the place of each bit that is set.
-void for_each(std::uint32_t bits, auto call) noexcept {
-  for (; bits != 0; bits &= bits - 1) call(static_cast<std::uint32_t>(__builtin_ctz(bits)));
+/// Whether everything of a pair that is inside is felt near the surface; where nothing is inside,
+/// whether anything is felt.
+bool is_near(const Work& work, std::uint32_t pair) noexcept {
+  const bool inside = work.memory.containment[pair].count > 0;
+  return inside ? those_far(work, pair) == 0 : feels_any(work, pair);
+}
+
+/// Whether a contact of a pair is certain.
+bool touches(const Work& work, std::uint32_t pair) noexcept {
+  const Containment& kept = work.memory.containment[pair];
+  bool certain = feels_any(work, pair);
+  for (std::uint32_t i = 0; i < kept.count; ++i) {
+    const Contained& one = kept.contained[i];
+    certain |= one.nearest.known() && !kept.is_open(one);
+  }
+  return certain;
+}
+
+/// Whether something of a pair may be inside and is not felt.
+bool may_be_inside(const Work& work, std::uint32_t pair) noexcept {
+  const Containment& kept = work.memory.containment[pair];
+  bool known = !kept.is_open();
+  for_each(those_far(work, pair),
+           [&](std::uint32_t i) { known &= kept.contained[i].nearest.known(); });
+  return !known && !is_near(work, pair);
 }
 
 const ImageView& body_of(const levels::PairState& pair, bool of_b) noexcept {
@@ -492,7 +516,7 @@ void settle_open_sides(Work& work) noexcept {
   constexpr int kQuestions = 2;  // what was asked in a tick before, and of the present poses
   for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
     const Containment& kept = work.memory.containment[i];
-    if (!kept.is_open() || is_near(work, i)) continue;
+    if (!kept.is_open() || touches(work, i)) continue;
     for (int k = 0; k < kQuestions && kept.is_open(); ++k) settle_side(work, i);
     look_for_ways_out(work, i);
   }
@@ -504,11 +528,14 @@ void find_ways_out(Work& work) noexcept {
 
 bool may_be_inside(const Work& work) noexcept {
   for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
-    const Containment& kept = work.memory.containment[i];
-    bool known = !kept.is_open();
-    for_each(those_far(work, i),
-             [&](std::uint32_t k) { known &= kept.contained[k].nearest.known(); });
-    if (!known && !is_near(work, i)) return true;
+    if (may_be_inside(work, i)) return true;
+  }
+  return false;
+}
+
+bool may_touch_inside(const Work& work) noexcept {
+  for (std::uint32_t i = 0; i < work.memory.pairs.size(); ++i) {
+    if (may_be_inside(work, i) && !touches(work, i)) return true;
   }
   return false;
 }

@@ -110,8 +110,8 @@ void settle_sides(Work& work) noexcept;
 /// gone through a surface by more than it is wide between two ticks.
 void settle_suspected_sides(Work& work) noexcept;
 
-/// The same wherever nothing is felt and one body may be inside the other, in this tick as far as
-/// the budget goes.
+/// The same wherever no contact is certain and one body may be inside the other, in this tick as
+/// far as the budget goes.
 void settle_open_sides(Work& work) noexcept;
 
 /// Finds the nearest pair of all of every component that is inside and not near the surface
@@ -120,7 +120,11 @@ void settle_open_sides(Work& work) noexcept;
 /// Cost: what is left of the budget at most.
 void find_ways_out(Work& work) noexcept;
 
-/// Whether bodies that feel nothing may still lie one inside the other. O(active) a pair
+/// Whether what is not felt may lie inside the other body: of bodies that feel nothing, or beside a
+/// component that is inside. O(active) a pair
 [[nodiscard]] bool may_be_inside(const Work& work) noexcept;
+
+/// Whether it may, and no contact of those two bodies is certain. O(active) a pair
+[[nodiscard]] bool may_touch_inside(const Work& work) noexcept;
 
 }  // namespace palpate::regions

@@ -66,7 +66,7 @@ void decide_on_reserve(Work& work) noexcept {
     draw_on_reserve(work);
     find_first_contact(work, active[first].pair);
   }
-  if (!may_be_inside(work)) return;
+  if (!may_touch_inside(work)) return;
   draw_on_reserve(work);
   settle_open_sides(work);
 }

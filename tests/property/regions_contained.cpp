@@ -389,6 +389,21 @@ TEST(RegionsContained, components_inside_are_felt_beside_one_that_crosses) {
   });
 }
 
+/// What a budget has in reserve is for a first contact, not for what else may be inside.
+TEST(RegionsContained, reserve_is_not_for_a_second_component) {
+  const Row row(12);
+  BakedScene scene = row.scene(true);
+  const Pose poses[2] = {{{0, 0, 0.5}, {}}, {}};
+  const Budget budget{.units = 40, .reserve_units = 1'000'000};
+  int drawn = 0;
+  for (int i = 0; i < 30; ++i) {
+    const TickResult r = tick_or_fail(*scene.engine, poses, budget);
+    EXPECT_FALSE(r.contacts.empty());
+    drawn += r.certificate.on_reserve ? 1 : 0;
+  }
+  EXPECT_LE(drawn, 1);
+}
+
 TEST(RegionsContained, more_components_inside_than_there_is_room_for_leave_the_question_open) {
   constexpr int kBalls = regions::kMostContained + 4;
   const Row row(kBalls);
