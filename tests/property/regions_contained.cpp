@@ -15,6 +15,7 @@
 #include "rt_core/regions/region_triangle.hpp"
 #include "tests/support/answers.hpp"
 #include "tests/support/baked_scene.hpp"
+#include "tests/support/brute_force.hpp"
 #include "tests/support/effort.hpp"
 #include "tests/support/placements.hpp"
 #include "tests/support/shapes.hpp"
@@ -297,8 +298,8 @@ class Row {
     bake::Mesh row;
     for (int i = 0; i < balls; ++i) {
       at_.push_back({0.9 - 1.8 * (i + 0.5) / balls, 0.01, -0.002 * i});
-      const bake::Mesh one = shifted(ball(6, 8, 0.4 / balls), at_.back());
-      row = i > 0 ? together(row, one) : one;
+      balls_.push_back(shifted(ball(6, 8, 0.4 / balls), at_.back()));
+      row = i > 0 ? together(row, balls_.back()) : balls_.back();
     }
     row_ = std::make_unique<BakedBody>(row, kRegions);
   }
@@ -339,9 +340,20 @@ class Row {
     return felt;
   }
 
+  /// Each ball that is deep inside has one contact, as deep as brute force finds it.
+  void expect_depths(const TickResult& r, Vec3d by) const {
+    const PlacedTriangles around(large_.mesh, {});
+    for (const bake::Mesh& one : balls_) {
+      const double depth = distance_of(PlacedTriangles(one, {by, {}}), around);
+      const auto is_its = [&](const Contact& c) { return std::abs(c.distance_m + depth) < 1e-6; };
+      EXPECT_EQ(std::ranges::count_if(r.contacts, is_its), 1) << depth;
+    }
+  }
+
  private:
   BakedBody large_;
   std::vector<Vec3d> at_;
+  std::vector<bake::Mesh> balls_;
   std::unique_ptr<BakedBody> row_;
 };
 
@@ -354,6 +366,7 @@ TEST(RegionsContained, all_components_that_are_inside_are_felt) {
     for (int i = 0; i < 4; ++i) r = tick(deep);
     EXPECT_EQ(row.felt(r, row_moves, deep), kBalls);
     EXPECT_EQ(r.contacts.size(), static_cast<std::size_t>(kBalls));
+    row.expect_depths(r, deep);
     EXPECT_GT(r.wrench.force_N.z * (row_moves ? 1 : -1), 0);
     EXPECT_NEAR(r.wrench.torque_Nm.y, 0, 0.2 * norm(r.wrench.force_N));
     // One of them leaves the box at its side.
