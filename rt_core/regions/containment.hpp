@@ -96,14 +96,15 @@ struct Containment {
 
 /// Settles for every pair what of one body is inside the other, where that is in doubt: where a
 /// vertex of one is inside the other, the whole component is, unless it crosses it: what does is
-/// asked for once they have parted, and what is inside beside it in every tick. Components are
+/// asked for once they have parted, and what is inside beside it in every tick. Where more than 32
+/// pairs of components cross each other, all count as crossing. Components are
 /// asked for one after another, a's before b's, which are not asked for where all of a is inside.
 /// Beyond kMostContained that are inside at once others are not felt before they come near a
 /// surface, and the question stays open. Images from before 1.5 do not tell several ones apart, and
 /// are not asked for. Of each that is inside and near no surface some pair is measured, about the
 /// nearest. Cost: side_of(), and a unit, for each component of each pair in doubt; but at most half
 /// of what a budget has left unless the bodies have jumped, the rest in the ticks to come. Then
-/// kUnitsOfLooks for each that is inside.
+/// kUnitsOfLooks for each that is inside. O(active) a pair.
 void settle_sides(Work& work) noexcept;
 
 /// The same where nothing is felt and one body seems to be inside the other, as a body is that has
