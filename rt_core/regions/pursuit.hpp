@@ -32,6 +32,7 @@ struct Pursuit {
   std::uint32_t round = 0;      ///< ticks in which witnesses were followed
   std::uint32_t next_dive = 0;  ///< where the next one begins to dive
   std::uint64_t unit_ns = 0;    ///< time of a work unit; 0: not known
+  std::uint64_t survey_ns = 0;  ///< the same of surveys: many looks in a row take less
   double listing_units = 64;    ///< what the pairs that cross in a region take to list, of late;
                                 ///< first, what does for half of them
 

@@ -43,7 +43,7 @@ class Survey {
     std::uint32_t open = 0;
     for (const Active& item : work.active()) open += is_open(item) ? 1u : 0u;
     const double telling = open < kTelling ? open : kTelling;
-    const double units = share * work.units_left();
+    const double units = share * work.units_left(expected_ns());
     const double each = units / (telling * (1 + kBeside) * kUnitsPerLook);
     looks_ = static_cast<std::uint32_t>(each < kFewestLooks  ? kFewestLooks
                                         : each < kMostSpread ? each
@@ -65,6 +65,7 @@ class Survey {
     if (seen == before) return false;
     if (work_.anew && !work_.swept) forget_unseen(seen);
     work_.memory.pursuit.surveyed = static_cast<double>(seen) / rounds_;
+    if (pace_ns() > 0) palpate::follow(work_.memory.pursuit.survey_ns, pace_ns());
     work_.widen_all();
     return true;
   }
@@ -102,7 +103,7 @@ class Survey {
       bool felt = false;
       for (end = first; end < active.size() && active[end].pair == active[first].pair; ++end) {
         const Active& item = active[end];
-        felt |= is_open(item) && work_.is_felt(item) && round_of(item) < seen;
+        felt |= is_open(item) && work_.is_felt(item) && is_before(seen, item);
       }
       const bool moved = has_moved_on(work_.pair_of(active[first]), work_.memory.pursuit.lagged);
       if (felt && moved) forget_unseen(active.subspan(first, end - first), seen);
@@ -111,7 +112,7 @@ class Survey {
   /// What crosses does so wherever it was found.
   void forget_unseen(std::span<const Active> of_pair, std::uint32_t seen) noexcept {
     for (const Active& item : of_pair) {
-      const bool unseen = is_open(item) && round_of(item) >= seen;
+      const bool unseen = is_open(item) && !is_before(seen, item);
       if (unseen && !work_.is_crossing(item)) work_.witness_of(item) = {};
     }
   }
@@ -165,6 +166,11 @@ class Survey {
     return static_cast<std::uint32_t>(std::uint64_t{regions[item.region].rank} * rounds_ /
                                       regions.size());
   }
+  /// Whether its turn comes before this round: round_of() < round, without a division.
+  bool is_before(std::uint32_t round, const Active& item) const noexcept {
+    const auto regions = work_.pair_of(item).image_a->regions;
+    return std::uint64_t{regions[item.region].rank} * rounds_ < round * regions.size();
+  }
 
   /// A round that is begun is ended, as far as that can be told: half of one is of one side.
   bool has_units_for(std::uint32_t round, double share) noexcept {
@@ -175,12 +181,22 @@ class Survey {
   }
 
   /// Work units that the tick has left: at the pace of the survey, which is another than that of
-  /// what came before it; before its first round, at that of ticks of late.
+  /// what came before it; before its first round, at that of surveys of late.
   double affordable() const noexcept {
+    const std::uint64_t unit_ns = pace_ns();
+    return work_.meter.queries_affordable(unit_ns > 0 ? unit_ns : expected_ns());
+  }
+  /// Time that a unit has taken so far; 0: none was used, or there is no clock.
+  std::uint64_t pace_ns() const noexcept {
     const std::uint64_t used = work_.pace.used() - began_at_;
-    const std::uint64_t unit_ns =
-        used > 0 ? (work_.meter.elapsed_ns() - began_ns_) / used : work_.memory.pursuit.unit_ns;
-    return work_.meter.queries_affordable(unit_ns);
+    return used > 0 ? (work_.meter.elapsed_ns() - began_ns_) / used : 0;
+  }
+  /// Before the first round: as surveys of late, which what the host did to one may have made long,
+  /// but no longer than other units.
+  std::uint64_t expected_ns() const noexcept {
+    const std::uint64_t of_late = work_.memory.pursuit.survey_ns;
+    const std::uint64_t others = work_.unit_ns();
+    return of_late > 0 && of_late < others ? of_late : others;
   }
 
   void see(std::uint32_t round) noexcept {

@@ -83,8 +83,10 @@ struct Work {
   /// Work units that the whole tick does for, about; infinity where nothing limits it.
   [[nodiscard]] double units_of_tick() const noexcept { return meter.queries_in_all(unit_ns()); }
   /// The same of what is left, with what is granted however late it is.
-  [[nodiscard]] double units_left() const noexcept {
-    const double in_time = meter.queries_affordable(unit_ns());
+  [[nodiscard]] double units_left() const noexcept { return units_left(unit_ns()); }
+  /// Of units that take so long each.
+  [[nodiscard]] double units_left(std::uint64_t each_ns) const noexcept {
+    const double in_time = meter.queries_affordable(each_ns);
     const auto granted = static_cast<double>(pace.granted());
     const double units = meter.queries_affordable(0);
     const double most = in_time > granted ? in_time : granted;
