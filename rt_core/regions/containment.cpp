@@ -375,11 +375,8 @@ void look_from_component(const ImageView& body, std::uint32_t first, Looks& look
   const auto triangles = static_cast<std::uint32_t>(body.region_triangles.size());
   const std::uint32_t left = triangles - first;
   const std::uint32_t end = first + (left < kMostPassed ? left : kMostPassed);
-  looks.count = 0;
   for (std::uint32_t i = first; i < end && looks.count < kMostLooks; ++i) {
-    if (first_of_component(body, i) != first) continue;
-    looks.number[looks.count] = looks.count;
-    looks.pairs[looks.count++] = {i, 0, 0};
+    if (first_of_component(body, i) == first) looks.add(i, looks.count);
   }
 }
 

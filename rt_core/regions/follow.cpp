@@ -74,6 +74,7 @@ class Follower {
                                           (pair.turn - seeds.turn_at) * pair.scale_a);
     seeds.travel_at = pair.travel;
     seeds.turn_at = pair.turn;
+    if (!measure_seed(witness, seeds)) note_seed(*work_.frame_of(item).a, witness, seeds);
     const float upper = below_delta(item, witness.distance);
     for (std::uint32_t k = 0; k < seeds.count; ++k) {
       seeds.distance[k] -= moved;
@@ -85,10 +86,8 @@ class Follower {
   /// A measured pair becomes a seed, and the witness where it is nearer.
   void take(std::uint32_t index, const Witness& pair) noexcept {
     const Active& item = work_.active()[index];
-    const ImageView& a = *work_.frame_of(item).a;
     Seeds& seeds = work_.kept_of(item).seeds;
-    note_seed(a, work_.witness_of(item), seeds);
-    note_seed(a, pair, seeds);
+    if (!measure_seed(pair, seeds)) note_seed(*work_.frame_of(item).a, pair, seeds);
     take_if_nearer(item, pair);
   }
 

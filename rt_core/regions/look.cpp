@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/look.hpp"
 
+#include <bit>
+
 #include "rt_core/base/assert.hpp"
 #include "rt_core/regions/simd.hpp"
 
@@ -20,8 +22,18 @@ void put(Vec3f place, std::uint32_t i, Cells& cells) noexcept {
   cells.at[2][i] = place.z;
 }
 
-/// An edge of more cells than this makes a triangle long.
-constexpr float kLongCells = 2;
+/// Square of the length that makes an edge long.
+float longest2(float cell) noexcept {
+  constexpr float kLongCells = 2;
+  return kLongCells * kLongCells * cell * cell;
+}
+
+/// @param Place  Vec3f, or several by lanes
+template <class Place, class Length2>
+auto has_long_edge(Place p, Place q, Place r, Length2 most2) noexcept {
+  const auto is_long = [&](Place e) { return e.x * e.x + e.y * e.y + e.z * e.z > most2; };
+  return is_long(q - p) | is_long(r - q) | is_long(p - r);
+}
 
 /// Places whose numbers follow each other are spread over the triangle: multiples of the plastic
 /// number's powers (Roberts 2018) in a parallelogram, of which one half is folded over the other.
@@ -41,9 +53,25 @@ Vec3f spread_over(const image::RegionTriangle& t, std::uint32_t number) noexcept
   return {at(0), at(1), at(2)};
 }
 
-/// Where a triangle is looked from.
-Vec3f place_on(const image::RegionTriangle& t, std::uint32_t number, float cell) noexcept {
-  return is_long(t, cell) ? spread_over(t, number) : centre_of(t);
+/// Triangles side by side.
+using CornerLanes = float[9][kMostLooks];
+
+/// Where a triangle is looked from, but for long ones.
+/// @return bit i set where triangle i is long
+std::uint32_t find_centres(const CornerLanes& corners, float cell, Cells& cells) noexcept {
+  std::uint32_t long_ones = 0;
+  for (std::uint32_t i = 0; i < kMostLooks; i += kLanes) {
+    const auto corner = [&](std::uint32_t k) {
+      return Vectors{load(&corners[k][i]), load(&corners[k + 1][i]), load(&corners[k + 2][i])};
+    };
+    const Vectors p = corner(0), q = corner(3), r = corner(6);
+    const Vectors centre = all(kThird) * (p + q + r);
+    store(centre.x, &cells.at[0][i]);
+    store(centre.y, &cells.at[1][i]);
+    store(centre.z, &cells.at[2][i]);
+    long_ones |= bits(has_long_edge(p, q, r, all(longest2(cell)))) << i;
+  }
+  return long_ones;
 }
 
 /// From a's image coordinates to b's.
@@ -108,16 +136,24 @@ std::uint32_t triangle_of(const image::RegionRun& run, std::uint32_t look) noexc
 
 void ask_for_triangles(const PairFrame& frame, Looks& looks) noexcept {
   for (std::uint32_t i = 0; i < looks.count; ++i) {
-    __builtin_prefetch(&frame.a->region_triangles[looks.pairs[i].a]);
+    __builtin_prefetch(&frame.a->region_triangles[looks.a[i]]);
   }
 }
 
 void find_bricks(const PairFrame& frame, Looks& looks) noexcept {
   Cells cells;
-  const float cell = frame.b->proximity_grid->cell * frame.b_to_a.scale;
+  CornerLanes corners = {};
+  const auto triangle = [&](std::uint32_t i) -> const image::RegionTriangle& {
+    return frame.a->region_triangles[looks.a[i]];
+  };
   for (std::uint32_t i = 0; i < looks.count; ++i) {
-    const image::RegionTriangle& t = frame.a->region_triangles[looks.pairs[i].a];
-    put(place_on(t, looks.number[i], cell), i, cells);
+    for (std::uint32_t k = 0; k < 9; ++k) corners[k][i] = triangle(i).corners[k];
+  }
+  const float cell = frame.b->proximity_grid->cell * frame.b_to_a.scale;
+  std::uint32_t long_ones = find_centres(corners, cell, cells);
+  for (; long_ones != 0; long_ones &= long_ones - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(long_ones));
+    put(spread_over(triangle(i), looks.number[i]), i, cells);
   }
   bring_over(frame.a_to_b, cells);
   find_cells(*frame.b->proximity_grid, cells);
@@ -136,21 +172,17 @@ void find_places(const PairFrame& frame, Looks& looks) noexcept {
 
 void name_pairs(const PairFrame& frame, Looks& looks) noexcept {
   for (std::uint32_t i = 0; i < looks.count; ++i) {
-    looks.pairs[i].b = *looks.at[i] & ~image::kCoarseBrick;
-    __builtin_prefetch(&frame.b->region_triangles[looks.pairs[i].b]);
+    looks.b[i] = *looks.at[i] & ~image::kCoarseBrick;
+    __builtin_prefetch(&frame.b->region_triangles[looks.b[i]]);
   }
 }
 
 }  // namespace
 
 bool is_long(const image::RegionTriangle& t, float cell) noexcept {
-  const float long2 = kLongCells * kLongCells * cell * cell;
-  for (std::uint32_t i = 0; i < 9; i += 3) {
-    const float* from = t.corners + i;
-    const float* to = t.corners + (i + 3) % 9;
-    if (squared_norm(Vec3f{to[0] - from[0], to[1] - from[1], to[2] - from[2]}) > long2) return true;
-  }
-  return false;
+  const float* c = t.corners;
+  return has_long_edge(Vec3f{c[0], c[1], c[2]}, Vec3f{c[3], c[4], c[5]}, Vec3f{c[6], c[7], c[8]},
+                       longest2(cell));
 }
 
 /// Calls by name, not through a table, so that the stack report counts them.
@@ -185,37 +217,31 @@ std::uint32_t near_place(const PairFrame& frame, Vec3f place) noexcept {
 
 void look_over(const PairFrame& frame, std::uint32_t region, std::uint32_t from,
                std::uint32_t count, Looks& out) noexcept {
-  PALPATE_ASSERT(count <= kMostLooks);
+  PALPATE_ASSERT(out.count + count <= kMostLooks);
   const image::RegionRun& run = frame.a->region_runs[region];
-  for (std::uint32_t i = 0; i < count; ++i) {
-    out.pairs[i] = {triangle_of(run, from + i), 0, 0};
-    out.number[i] = from + i;
-  }
-  out.count = count;
+  for (std::uint32_t i = 0; i < count; ++i) out.add(triangle_of(run, from + i), from + i);
 }
 
 void look_everywhere(const PairFrame& frame, Looks& out) noexcept {
+  PALPATE_ASSERT(out.count == 0);
   const auto regions = static_cast<std::uint32_t>(frame.a->region_runs.size());
   const std::uint32_t count = regions < kMostLooks ? regions : kMostLooks;
-  for (out.count = 0; out.count < count; ++out.count) {
-    const image::RegionRun& run = frame.a->region_runs[out.count * (regions / count)];
-    out.number[out.count] = out.count;
-    out.pairs[out.count] = {run.first + run.count / 2, 0, 0};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const image::RegionRun& run = frame.a->region_runs[i * (regions / count)];
+    out.add(run.first + run.count / 2, i);
   }
 }
 
 void look_beside(const PairFrame& frame, std::uint32_t region, std::uint32_t triangle,
                  std::uint32_t count, Looks& out) noexcept {
-  PALPATE_ASSERT(count <= kMostLooks);
+  PALPATE_ASSERT(out.count + count <= kMostLooks);
   const image::RegionRun& run = frame.a->region_runs[region];
   const std::uint32_t wanted = count < run.count ? count : run.count - 1;
   const std::uint32_t last = run.first + run.count - 1 - wanted;
   const std::uint32_t centred = triangle > wanted / 2 ? triangle - wanted / 2 : 0;
   std::uint32_t next = centred < run.first ? run.first : centred < last ? centred : last;
-  for (out.count = 0; out.count < wanted; ++next) {
-    if (next == triangle) continue;
-    out.number[out.count] = out.count;
-    out.pairs[out.count++] = {next, 0, 0};
+  for (std::uint32_t i = 0; i < wanted; ++next) {
+    if (next != triangle) out.add(next, i++);
   }
 }
 

@@ -19,9 +19,10 @@ inline bool can_look(const PairFrame& frame) noexcept {
   return frame.b->proximity_grid != nullptr && !frame.a->region_runs.empty();
 }
 
+inline constexpr float kThird = 1.0f / 3;
+
 /// In image coordinates.
 inline Vec3f centre_of(const image::RegionTriangle& t) noexcept {
-  constexpr float kThird = 1.0f / 3;
   const float* c = t.corners;
   return {kThird * (c[0] + c[3] + c[6]), kThird * (c[1] + c[4] + c[7]),
           kThird * (c[2] + c[5] + c[8])};
@@ -56,10 +57,18 @@ std::uint32_t near_place(const PairFrame& frame, Vec3f place) noexcept;
 /// grid's cells are fine.
 struct Looks {
   std::uint32_t count = 0;
-  Witness pairs[kMostLooks];            ///< `b` once all steps are done; distances are 0
+  std::uint32_t a[kMostLooks];          ///< into a's region_triangles
+  std::uint32_t b[kMostLooks];          ///< into b's, once all steps are done
   const std::uint32_t* at[kMostLooks];  ///< what the next step reads
   std::uint8_t in_brick[kMostLooks];    ///< and where in that, if it is a brick
   std::uint32_t number[kMostLooks];     ///< looks from one triangle by different ones lie apart
+
+  /// Precondition: count < kMostLooks
+  void add(std::uint32_t triangle, std::uint32_t look) noexcept {
+    number[count] = look;
+    a[count++] = triangle;
+  }
+  [[nodiscard]] Witness pair(std::uint32_t i) const noexcept { return {a[i], b[i], 0}; }
 };
 
 inline constexpr std::uint32_t kLookSteps = 4;
@@ -72,9 +81,9 @@ void look_step(const PairFrame& frame, std::uint32_t step, Looks& looks) noexcep
 /// All steps, one after the other.
 void look_from(const PairFrame& frame, Looks& looks) noexcept;
 
-/// Looks from triangles that are spread over a region.
+/// Adds looks from triangles that are spread over a region.
 /// @param from   number of the first look; those that follow each other lie apart
-/// @param count  at most kMostLooks
+/// @param count  so many more that `out` has room for them
 /// @param out    before any step
 /// Precondition: can_look(frame). O(count)
 void look_over(const PairFrame& frame, std::uint32_t region, std::uint32_t from,
@@ -82,14 +91,14 @@ void look_over(const PairFrame& frame, std::uint32_t region, std::uint32_t from,
 
 /// Looks from a triangle of each of sixteen regions that lie apart, or of all where there are
 /// fewer.
-/// @param out  before any step
+/// @param out  without any yet
 /// Precondition: can_look(frame). O(1)
 void look_everywhere(const PairFrame& frame, Looks& out) noexcept;
 
-/// Looks from the triangles on both sides of one of the region's: neighbours in a run are
+/// Adds looks from the triangles on both sides of one of the region's: neighbours in a run are
 /// neighbours on the surface. Fewer than `count` where the region has no more.
 /// @param triangle  of a, not looked from itself
-/// @param count     at most kMostLooks
+/// @param count     so many more that `out` has room for them
 /// @param out       before any step
 /// Precondition: can_look(frame). O(count)
 void look_beside(const PairFrame& frame, std::uint32_t region, std::uint32_t triangle,

@@ -9,28 +9,24 @@ namespace palpate::regions {
 
 /// Looks that go on where the last ones of the region ended.
 /// @param item   whose frame can_look()
-/// @param count  at most kMostLooks
+/// @param count  so many more that `out` has room for them
 inline void look_on(const Work& work, const Active& item, std::uint32_t count,
                     Looks& out) noexcept {
   look_over(work.frame_of(item), item.region, work.kept_of(item).seeds.dives, count, out);
 }
 
-/// After their steps; a unit for kLooksPerUnit of them.
-/// @param batch  a PairBatch
-void add_looks(Work& work, std::uint32_t index, const Looks& looks, auto& batch) noexcept {
-  work.pace.charge(looks.count / kLooksPerUnit);
-  for (std::uint32_t k = 0; k < looks.count; ++k) batch.add(index, looks.pairs[k]);
-}
-
-/// A region's next looks, all at once.
+/// A region's next looks, all at once; a unit for kLooksPerUnit of them.
 /// @param index  of the active region, whose frame can_look()
+/// @param count  at most kMostLooks
+/// @param batch  a PairBatch
 void look_into(Work& work, std::uint32_t index, std::uint32_t count, auto& batch) noexcept {
   const Active& item = work.active()[index];
   Looks looks;
   look_on(work, item, count, looks);
   look_from(work.frame_of(item), looks);
   work.kept_of(item).seeds.dives += count;
-  add_looks(work, index, looks, batch);
+  work.pace.charge(count / kLooksPerUnit);
+  for (std::uint32_t k = 0; k < count; ++k) batch.add(index, looks.pair(k));
 }
 
 /// Looks and the pairs that they find measured, at most.
@@ -43,8 +39,8 @@ inline Witness nearest_of(Work& work, const PairFrame& frame, Looks& looks) noex
   look_from(frame, looks);
   work.pace.charge(looks.count / kLooksPerUnit);
   for (std::uint32_t i = 0; i < looks.count; ++i) {
-    scratch.batch_a[i] = looks.pairs[i].a;
-    scratch.batch_b[i] = looks.pairs[i].b;
+    scratch.batch_a[i] = looks.a[i];
+    scratch.batch_b[i] = looks.b[i];
   }
   static_assert(kMostLooks == kBatch);
   float distances[kBatch];
@@ -53,7 +49,7 @@ inline Witness nearest_of(Work& work, const PairFrame& frame, Looks& looks) noex
   for (std::uint32_t i = 1; i < looks.count; ++i) {
     if (distances[i] < distances[nearest]) nearest = i;
   }
-  return {looks.pairs[nearest].a, looks.pairs[nearest].b, distances[nearest]};
+  return {looks.a[nearest], looks.b[nearest], distances[nearest]};
 }
 
 }  // namespace palpate::regions

@@ -90,7 +90,7 @@ class Scout {
     regions::look_everywhere(frame_, looks);
     const Witness nearest = nearest_of(work_, frame_, looks);
     std::uint32_t behind = 0;
-    for (std::uint32_t i = 0; i < looks.count; ++i) behind += is_behind(looks.pairs[i]) ? 1u : 0u;
+    for (std::uint32_t i = 0; i < looks.count; ++i) behind += is_behind(looks.pair(i)) ? 1u : 0u;
     work_.memory.containment[pair_].suspected = 2 * behind > looks.count;
     return take(nearest);
   }

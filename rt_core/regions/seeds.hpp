@@ -41,6 +41,10 @@ struct Seeds {
 /// triangle, or first corners closer together than an eighth of the region's radius. O(kSeeds)
 void note_seed(const ImageView& a, const Witness& pair, Seeds& seeds) noexcept;
 
+/// Tells how far apart the pair of a seed is now.
+/// @return false where the pair is not one of the seeds. O(kSeeds)
+bool measure_seed(const Witness& pair, Seeds& seeds) noexcept;
+
 /// Takes a seed to another pair.
 /// @param index  below seeds.count
 void move_seed(const ImageView& a, std::uint32_t index, const Witness& to, Seeds& seeds) noexcept;

@@ -18,6 +18,9 @@ constexpr double kMostSpread = 14;
 static_assert(kMostSpread <= kMostLooks);
 /// Beside the nearest, of each that is spread over a region.
 constexpr double kBeside = 0.75;
+/// Together they wait for memory less than where they are alone, and so many count as a unit. A
+/// survey is planned as if they were alone: rounds that are begun are ended.
+constexpr std::uint32_t kTogetherPerUnit = 6;
 constexpr double kUnitsPerLook = 1.0 / kLooksPerUnit + static_cast<double>(kBatchUnits) / kBatch;
 constexpr std::uint32_t kRegionsPerRound = 16;
 constexpr std::uint32_t kMostRounds = 64;
@@ -203,47 +206,73 @@ class Survey {
     const std::uint32_t first = looks_ / 2;
     const std::uint32_t rest = looks_ - first;
     spread_ = true;
-    see_each(round, [&](const Active& item, Looks& out) { look_on(work_, item, first, out); });
+    const auto look = [&](const Active& item, Looks& out) { look_on(work_, item, first, out); };
+    see_each(round, first, look);
     // Half of them tell where there is something to find.
-    see_each(round, [&](const Active& item, Looks& out) {
+    see_each(round, rest, [&](const Active& item, Looks& out) {
       if (work_.may_climb(item)) look_on(work_, item, rest, out);
     });
     spread_ = false;
-    see_each(round, [&](const Active& item, Looks& out) {
+    see_each(round, beside_, [&](const Active& item, Looks& out) {
       if (!work_.is_felt(item)) return;
       look_beside(work_.frame_of(item), item.region, work_.witness_of(item).a, beside_, out);
     });
   }
 
+  /// Looks of regions of one pair of bodies, all in the same step.
+  struct Party {
+    Looks looks;
+    std::uint32_t of[kMostLooks];  // which active region each is of
+    const PairFrame* frame = nullptr;
+  };
+
   /// Looks from the places that are chosen in every region of a round, and measures the pairs.
-  /// Memory is slow: while one region's looks are measured, those of the next ones are on their
-  /// way.
-  /// @param choose  called as choose(item, looks), which come without any
-  void see_each(std::uint32_t round, auto choose) noexcept {
+  /// Memory is slow: while one party's looks are measured, those of the next ones are on their way;
+  /// and a few looks at a time would wait for it as long as many.
+  /// @param most    looks of a region
+  /// @param choose  called as choose(item, looks), to which it adds
+  void see_each(std::uint32_t round, std::uint32_t most, auto choose) noexcept {
     const std::span<const std::uint32_t> regions = regions_of(round);
-    const auto count = static_cast<std::uint32_t>(regions.size());
-    Looks on_their_way[kLookSteps];
-    for (std::uint32_t k = 0; k < count + kLookSteps - 1; ++k) {
+    Party on_their_way[kLookSteps];
+    std::size_t sent = 0;
+    for (std::uint32_t k = 0, left = kLookSteps; left > 0; ++k) {
+      sent = send(regions, sent, most, choose, on_their_way[k % kLookSteps]);
       for (std::uint32_t step = 0; step < kLookSteps && step <= k; ++step) {
-        const std::uint32_t at = k - step;
-        if (at >= count) continue;
-        const Active& item = work_.active()[regions[at]];
-        const PairFrame& frame = work_.frame_of(item);
-        Looks& looks = on_their_way[at % kLookSteps];
-        if (step == 0) {
-          looks.count = 0;
-          if (can_look(frame)) choose(item, looks);
-        }
-        look_step(frame, step, looks);
+        Party& party = on_their_way[(k - step) % kLookSteps];
+        if (party.looks.count > 0) look_step(*party.frame, step, party.looks);
       }
+      if (sent == regions.size()) --left;
       if (k + 1 < kLookSteps) continue;
       if (!work_.pace.go_on()) break;
-      const std::uint32_t seen = k + 1 - kLookSteps;
-      const Looks& looks = on_their_way[seen % kLookSteps];
-      if (spread_) work_.kept_of(work_.active()[regions[seen]]).seeds.dives += looks.count;
-      add_looks(work_, regions[seen], looks, batch_);
+      measure_all_of(on_their_way[(k + 1) % kLookSteps]);
     }
     batch_.measure_all();
+  }
+
+  /// @param party  gets looks of as many regions as there is room for; none where all are sent
+  /// @return the first region that is not sent yet
+  std::size_t send(std::span<const std::uint32_t> regions, std::size_t next, std::uint32_t most,
+                   auto choose, Party& party) noexcept {
+    Looks& looks = party.looks;
+    std::uint32_t count = looks.count = 0;
+    for (; next < regions.size() && count + most <= kMostLooks; ++next) {
+      const Active& item = work_.active()[regions[next]];
+      const PairFrame& frame = work_.frame_of(item);
+      if (count > 0 && party.frame != &frame) break;
+      party.frame = &frame;
+      if (can_look(frame)) choose(item, looks);
+      for (; count < looks.count; ++count) party.of[count] = regions[next];
+    }
+    return next;
+  }
+
+  void measure_all_of(const Party& party) noexcept {
+    work_.pace.charge((party.looks.count + kTogetherPerUnit / 2) / kTogetherPerUnit);
+    for (std::uint32_t i = 0; i < party.looks.count; ++i) {
+      const std::uint32_t index = party.of[i];
+      if (spread_) ++work_.kept_of(work_.active()[index]).seeds.dives;
+      batch_.add(index, party.looks.pair(i));
+    }
   }
 
   void take(std::uint32_t index, const Witness& pair) noexcept {

@@ -54,7 +54,8 @@ TEST(RegionLook, What_is_found_is_a_cell_away_at_most) {
     regions::Looks looks;
     regions::look_over(frame, region, 3, regions::kMostLooks, looks);
     regions::look_from(frame, looks);
-    for (const regions::Witness& pair : looks.pairs) {
+    for (std::uint32_t i = 0; i < looks.count; ++i) {
+      const regions::Witness pair = looks.pair(i);
       EXPECT_EQ(view.region_triangles[pair.a].region, region);
       EXPECT_LE(
           norm(centre_of(view.region_triangles[pair.a]) - centre_of(view.region_triangles[pair.b])),
@@ -73,7 +74,7 @@ TEST(RegionLook, Looks_in_a_row_are_of_different_triangles) {
       regions::Looks looks;
       regions::look_over(frame, region, from, count, looks);
       std::set<std::uint32_t> seen;
-      for (std::uint32_t i = 0; i < count; ++i) seen.insert(looks.pairs[i].a);
+      for (std::uint32_t i = 0; i < count; ++i) seen.insert(looks.a[i]);
       EXPECT_EQ(seen.size(), count) << "region " << region << " of " << triangles;
     }
   }
@@ -92,7 +93,7 @@ TEST(RegionLook, Looks_beside_a_triangle_are_of_the_others_of_its_region_that_fo
         regions::look_from(frame, looks);
         ASSERT_EQ(looks.count, std::min(count, run.count - 1));
         for (std::uint32_t i = 0; i < looks.count; ++i) {
-          const regions::Witness& pair = looks.pairs[i];
+          const regions::Witness pair = looks.pair(i);
           EXPECT_EQ(view.region_triangles[pair.a].region, region);
           EXPECT_NE(pair.a, triangle);
           EXPECT_LE(std::max(pair.a, triangle) - std::min(pair.a, triangle), count);
@@ -101,6 +102,30 @@ TEST(RegionLook, Looks_beside_a_triangle_are_of_the_others_of_its_region_that_fo
       }
     }
   }
+}
+
+TEST(RegionLook, Looks_of_several_regions_go_together) {
+  const ImageView& view = ball().view;
+  const regions::PairFrame frame = coincident(view);
+  ASSERT_GE(view.regions.size(), 3u);
+  regions::Looks together;
+  regions::look_over(frame, 0, 7, 5, together);
+  regions::look_beside(frame, 1, view.region_runs[1].first, 4, together);
+  regions::look_over(frame, 2, 0, 6, together);
+  ASSERT_EQ(together.count, 15u);
+  regions::look_from(frame, together);
+  regions::Looks alone[3];
+  regions::look_over(frame, 0, 7, 5, alone[0]);
+  regions::look_beside(frame, 1, view.region_runs[1].first, 4, alone[1]);
+  regions::look_over(frame, 2, 0, 6, alone[2]);
+  std::uint32_t i = 0;
+  for (regions::Looks& looks : alone) {
+    regions::look_from(frame, looks);
+    for (std::uint32_t k = 0; k < looks.count; ++k, ++i) {
+      EXPECT_TRUE(together.pair(i).same_pair(looks.pair(k)));
+    }
+  }
+  EXPECT_EQ(i, together.count);
 }
 
 /// A needle through a ball: all of its surface is far from the needle's centre.
@@ -116,7 +141,8 @@ TEST(RegionLook, A_long_triangle_is_looked_from_all_along) {
     regions::look_over(frame, region, 0, regions::kMostLooks, looks);
     regions::look_from(frame, looks);
     double least = 1, most = -1;
-    for (const regions::Witness& pair : looks.pairs) {
+    for (std::uint32_t i = 0; i < looks.count; ++i) {
+      const regions::Witness pair = looks.pair(i);
       const double x = centre_of(ball().view.region_triangles[pair.b]).x;
       least = std::min(least, x);
       most = std::max(most, x);
@@ -134,7 +160,8 @@ TEST(RegionLook, Far_outside_something_is_named) {
     regions::Looks looks;
     regions::look_over(frame, 0, 0, regions::kMostLooks, looks);
     regions::look_from(frame, looks);
-    for (const regions::Witness& pair : looks.pairs) {
+    for (std::uint32_t i = 0; i < looks.count; ++i) {
+      const regions::Witness pair = looks.pair(i);
       EXPECT_LT(pair.b, view.region_triangles.size());
     }
   }

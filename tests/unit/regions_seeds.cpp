@@ -68,6 +68,18 @@ TEST(RegionSeeds, of_one_place_the_nearer_is_kept) {
   EXPECT_TRUE(holds(seeds, {40, 101, 0.7f}));
 }
 
+TEST(RegionSeeds, one_that_is_measured_anew_keeps_its_place) {
+  const Row row;
+  Seeds seeds = full(row);
+  EXPECT_TRUE(measure_seed({4, 102, 9}, seeds));
+  EXPECT_TRUE(holds(seeds, {4, 102, 9}));
+  EXPECT_EQ(seeds.count, kSeeds);
+  EXPECT_FALSE(measure_seed({4, 103, 0.01f}, seeds));  // of two seeds, a triangle each
+  EXPECT_TRUE(holds(seeds, {4, 102, 9}));
+  seeds.count = 2;
+  EXPECT_FALSE(measure_seed({4, 102, 1}, seeds));  // no longer one of them
+}
+
 TEST(RegionSeeds, the_farthest_goes_first) {
   const Row row;
   Seeds seeds = full(row);
