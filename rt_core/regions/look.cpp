@@ -31,8 +31,9 @@ float longest2(float cell) noexcept {
 /// @param Place  Vec3f, or several by lanes
 template <class Place, class Length2>
 auto has_long_edge(Place p, Place q, Place r, Length2 most2) noexcept {
-  const auto is_long = [&](Place e) { return e.x * e.x + e.y * e.y + e.z * e.z > most2; };
-  return is_long(q - p) | is_long(r - q) | is_long(p - r);
+  const auto length2 = [](Place e) { return e.x * e.x + e.y * e.y + e.z * e.z; };
+  const auto longer = [](auto a, auto b) { return a > b ? a : b; };
+  return longer(longer(length2(q - p), length2(r - q)), length2(p - r)) > most2;
 }
 
 /// Places whose numbers follow each other are spread over the triangle: multiples of the plastic
