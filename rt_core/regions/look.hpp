@@ -11,7 +11,8 @@ namespace palpate::regions {
 
 /// In one call, at most.
 inline constexpr std::uint32_t kMostLooks = 16;
-/// So many looks count as one work unit, beside what it takes to measure what they find.
+/// So many looks by themselves count as one work unit, beside what it takes to measure what they
+/// find. Many that are under way at once wait for memory less (survey.cpp).
 inline constexpr std::uint32_t kLooksPerUnit = 4;
 
 /// Whether b's image says what is near a place, and a's which triangles are a region's.
@@ -19,7 +20,7 @@ inline bool can_look(const PairFrame& frame) noexcept {
   return frame.b->proximity_grid != nullptr && !frame.a->region_runs.empty();
 }
 
-inline constexpr float kThird = 1.0f / 3;
+inline constexpr float kThird = 1.0f / 3;  ///< of a triangle's corners, for its centre
 
 /// In image coordinates.
 inline Vec3f centre_of(const image::RegionTriangle& t) noexcept {

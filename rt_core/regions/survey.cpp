@@ -229,7 +229,7 @@ class Survey {
   /// Looks from the places that are chosen in every region of a round, and measures the pairs.
   /// Memory is slow: while one party's looks are measured, those of the next ones are on their way;
   /// and a few looks at a time would wait for it as long as many.
-  /// @param most    looks of a region
+  /// @param most    looks of a region, at most kMostLooks
   /// @param choose  called as choose(item, looks), to which it adds
   void see_each(std::uint32_t round, std::uint32_t most, auto choose) noexcept {
     const std::span<const std::uint32_t> regions = regions_of(round);
