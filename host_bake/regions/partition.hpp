@@ -22,7 +22,7 @@ struct RegionOptions {
   double cosine = 0.2;
   /// So are those whose normals fall into two groups, the means of which are farther apart than the
   /// angle of this cosine: what pushes along the one is not felt along the other
-  /// (rt_core/force/directions.hpp), and a region has one contact. Above zero, so that walls at a
+  /// (rt_core/geometry/directions.hpp), and a region has one contact. Above zero, so that walls at a
   /// right angle are two whatever rounding says.
   double walls_cosine = 0.1;
   /// ... unless smaller than this share of `radius`: roughness below it is one feature.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/force/penalty.hpp"
 
-#include "rt_core/force/directions.hpp"
+#include "rt_core/geometry/directions.hpp"
 
 namespace palpate::force {
 namespace {

@@ -74,10 +74,10 @@ class Follower {
                                           (pair.turn - seeds.turn_at) * pair.scale_a);
     seeds.travel_at = pair.travel;
     seeds.turn_at = pair.turn;
+    for (std::uint32_t k = 0; k < seeds.count; ++k) seeds.distance[k] -= moved;
     if (!measure_seed(witness, seeds)) note_seed(*work_.frame_of(item).a, witness, seeds);
     const float upper = below_delta(item, witness.distance);
     for (std::uint32_t k = 0; k < seeds.count; ++k) {
-      seeds.distance[k] -= moved;
       const Witness seed = seeds.at(k);
       if (seed.distance < upper && !seed.same_pair(witness)) batch.add(index, seed);
     }

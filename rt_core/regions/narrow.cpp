@@ -8,6 +8,7 @@
 #include "rt_core/base/queue.hpp"
 #include "rt_core/regions/close.hpp"
 #include "rt_core/regions/follow.hpp"
+#include "rt_core/regions/lone.hpp"
 #include "rt_core/regions/motion.hpp"
 #include "rt_core/regions/scout.hpp"
 #include "rt_core/regions/survey.hpp"
@@ -190,7 +191,10 @@ class Narrowing {
   /// For most of the budget where that brings witnesses nearer, else for as much as it takes to
   /// see when it does. After a jump there is nothing to see yet.
   void follow_witnesses() noexcept {
-    if (!work_.anew && pursuit_.surveyed < 1 && survey(work_, kMostSurveyed)) return;
+    if (!work_.anew && pursuit_.surveyed < 1 && survey(work_, kMostSurveyed)) {
+      work_.widen_all();
+      return;
+    }
     const Yield& by_search = pursuit_.search;
     const Yield& by_follow = pursuit_.follow;
     const double units = affordable();
@@ -210,7 +214,9 @@ class Narrowing {
     count_all();
     if (search_while_it_lasts() || !work_.pace.go_on()) return;
     lags_ = work_.followed = true;
-    static_cast<void>(survey(work_, kMostSurveyed));
+    if (!survey(work_, kMostSurveyed)) return;
+    tell_lone(work_);
+    work_.widen_all();
   }
 
   /// A few searches tell little of what the others take: it is asked again every few of them.

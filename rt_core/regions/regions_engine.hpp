@@ -42,6 +42,7 @@ struct Active {
   float moved = 0;    ///< since the proof, at most
   float width = 0;    ///< min(witness, delta) - rest: what its force may still change by
   float weight = 1;   ///< the root of what a search of it costs, of which the mean is 1
+  float lone = 1;     ///< of what is felt, the less else is felt that way the more, 1 in the mean
   float urgency = 0;  ///< the larger, the sooner it is looked at
   Way way;            ///< of the witness as this tick has found it
   std::uint32_t state = 0;

@@ -69,7 +69,6 @@ class Survey {
     if (work_.anew && !work_.swept) forget_unseen(seen);
     work_.memory.pursuit.surveyed = static_cast<double>(seen) / rounds_;
     if (pace_ns() > 0) palpate::follow(work_.memory.pursuit.survey_ns, pace_ns());
-    work_.widen_all();
     return true;
   }
 

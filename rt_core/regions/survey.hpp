@@ -20,7 +20,8 @@ namespace palpate::regions {
 /// are slow, or nothing of what it has seen of the two is felt.
 ///
 /// Proves nothing; witnesses are at the present poses as before. Where an image cannot be looked up
-/// in, nothing. Takes the queue of the query's memory as scratch.
+/// in, nothing. Takes the queue of the query's memory as scratch. Widths and urgencies are to be
+/// told anew (Work::widen_all).
 /// @param share  of the tick's units and time, within what the budget leaves
 /// @return false where no round was begun
 /// Cost: the share, plus five passes over all active regions a round, of at most 148, and two to

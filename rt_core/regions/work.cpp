@@ -14,9 +14,9 @@ constexpr float kNarrow = 0.2f;
 /// What is not felt, because others beside it are, goes last.
 constexpr float kNotFelt = 1e-3f;
 /// After a jump nearly everything is open, and what is deepest decides the force: a contact counts
-/// with the square of its depth (force/penalty.hpp), which of a shallow one may still grow. Of what
-/// no contact is known of, few have one, and the fewer the farther what has been seen of it. A
-/// climb is cheap.
+/// with the square of its depth (force/penalty.hpp), which of a shallow one may still grow; and the
+/// more of that, the less others push the same way (lone.hpp). Of what no contact is known of, few
+/// have one, and the fewer the farther what has been seen of it. A climb is cheap.
 constexpr float kShallow = 0.1f;
 constexpr float kNoContact = 0.1f;
 constexpr float kNotClimbed = 5;
@@ -67,8 +67,12 @@ float Work::weight_of_unknown(const Active& item) const noexcept {
   const float climb = anew && may_climb(item) ? kNotClimbed : 1;
   if (!witness.known()) return touching ? kNoContact : kUnseen;
   if (!is_felt(item)) return climb * kNoContact * delta_of(item) / witness.distance;
+  return climb * item.lone * mass_of(item);
+}
+
+float Work::mass_of(const Active& item) const noexcept {
   const float depth = 1 - upper_of(item) / delta_of(item);
-  return climb * (kShallow + depth * depth);
+  return kShallow + depth * depth;
 }
 
 float Work::worth(const Active& item) const noexcept {

@@ -123,6 +123,9 @@ struct Work {
   /// Of an interval in the order of a tick: its width, with a tolerance or where it is narrow over
   /// what a search of it costs.
   [[nodiscard]] float worth(const Active& item) const noexcept;
+  /// What a region that is felt weighs in the force (force/penalty.hpp), in squares of delta, and
+  /// with what it may still gain.
+  [[nodiscard]] float mass_of(const Active& item) const noexcept;
   /// By what to multiply that under a budget after a jump, and while nothing is felt.
   [[nodiscard]] float weight_of_unknown(const Active& item) const noexcept;
 

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "rt_core/force/directions.hpp"
+#include "rt_core/geometry/directions.hpp"
 #include "tests/support/effort.hpp"
 
 namespace palpate::force {

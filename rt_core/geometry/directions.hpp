@@ -4,7 +4,7 @@
 
 #include "rt_core/geometry/vec3.hpp"
 
-namespace palpate::force {
+namespace palpate {
 
 /// How far two unit normals count as one, by the cosine c between them: c^2 (1 + c) / 2. One for
 /// equal normals, zero for perpendicular and for opposed ones, nowhere negative; the polynomial of
@@ -53,4 +53,4 @@ class Directions {
   double all_ = 0;    // xyz
 };
 
-}  // namespace palpate::force
+}  // namespace palpate
