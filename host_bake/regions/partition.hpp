@@ -22,8 +22,8 @@ struct RegionOptions {
   double cosine = 0.2;
   /// So are those whose normals fall into two groups, the means of which are farther apart than the
   /// angle of this cosine: what pushes along the one is not felt along the other
-  /// (rt_core/geometry/directions.hpp), and a region has one contact. Above zero, so that walls at a
-  /// right angle are two whatever rounding says.
+  /// (rt_core/geometry/directions.hpp), and a region has one contact. Above zero, so that walls at
+  /// a right angle are two whatever rounding says.
   double walls_cosine = 0.1;
   /// ... unless smaller than this share of `radius`: roughness below it is one feature.
   double least_share = 0.25;

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/regions/corner_lanes.hpp"
 #include "rt_core/regions/simd.hpp"
 
 namespace palpate::regions {
@@ -14,7 +15,7 @@ struct Cells {
   float at[3][kMostLooks] = {};
   std::int32_t cell[3][kMostLooks];
 };
-static_assert(kMostLooks % kLanes == 0);
+static_assert(kMostLooks == kBatch && kMostLooks % kLanes == 0);
 
 void put(Vec3f place, std::uint32_t i, Cells& cells) noexcept {
   cells.at[0][i] = place.x;
@@ -143,15 +144,15 @@ void ask_for_triangles(const PairFrame& frame, Looks& looks) noexcept {
 
 void find_bricks(const PairFrame& frame, Looks& looks) noexcept {
   Cells cells;
-  CornerLanes corners = {};
+  CornerLanes corners;
   const auto triangle = [&](std::uint32_t i) -> const image::RegionTriangle& {
     return frame.a->region_triangles[looks.a[i]];
   };
-  for (std::uint32_t i = 0; i < looks.count; ++i) {
-    for (std::uint32_t k = 0; k < 9; ++k) corners[k][i] = triangle(i).corners[k];
-  }
+  const image::RegionTriangle* from[kMostLooks];
+  for (std::uint32_t i = 0; i < kMostLooks; ++i) from[i] = &triangle(i < looks.count ? i : 0);
+  gather(from, corners);
   const float cell = frame.b->proximity_grid->cell * frame.b_to_a.scale;
-  std::uint32_t long_ones = find_centres(corners, cell, cells);
+  std::uint32_t long_ones = find_centres(corners, cell, cells) & ((1u << looks.count) - 1);
   for (; long_ones != 0; long_ones &= long_ones - 1) {
     const auto i = static_cast<std::uint32_t>(std::countr_zero(long_ones));
     put(spread_over(triangle(i), looks.number[i]), i, cells);

@@ -65,7 +65,7 @@ const Case kCases[] = {
     {"regions, 100 units",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      100,
-     0x58258f1986527961},
+     0x844ada8c7ae52c83},
     {"regions, 60 units, slowly",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      60,
