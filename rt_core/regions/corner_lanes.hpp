@@ -11,8 +11,8 @@ namespace {
 
 /// Corners of sixteen triangles, component by component. Four components of four triangles at a
 /// time where there are vectors: stores of single floats would be waited for.
-PALPATE_LANES void gather(const image::RegionTriangle* const (&from)[kBatch],
-                          float (&out)[9][kBatch]) noexcept {
+PALPATE_LANES void gather_corners(const image::RegionTriangle* const (&from)[kBatch],
+                                  float (&out)[9][kBatch]) noexcept {
 #if PALPATE_VECTORS
   for (std::uint32_t i = 0; i < kBatch; i += 4) {
     for (int c = 0; c < 8; c += 4) {

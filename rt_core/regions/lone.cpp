@@ -7,12 +7,17 @@
 namespace palpate::regions {
 namespace {
 
-void measure_felt(Work& work) noexcept {
+/// @return false where the budget has ended
+bool measure_felt(Work& work) noexcept {
   WitnessBatch batch(work);
+  std::uint32_t felt = 0;
   for (std::uint32_t i = 0; i < work.count; ++i) {
-    if (work.is_felt(work.active()[i])) batch.add(i);
+    if (!work.is_felt(work.active()[i])) continue;
+    if (felt++ % kBatch == 0 && !work.pace.go_on()) return false;
+    batch.add(i);
   }
   batch.measure_all();
+  return true;
 }
 
 /// World axes; zero where it crosses.
@@ -24,7 +29,7 @@ Vec3d direction_of(const Work& work, const Active& item) noexcept {
 }  // namespace
 
 void tell_lone(Work& work) noexcept {
-  measure_felt(work);
+  if (!measure_felt(work)) return;
   Directions directions;
   for (const Active& item : work.active()) {
     if (!work.is_felt(item)) continue;

@@ -10,7 +10,7 @@ namespace palpate::regions {
 /// (Active::lone): of those that push in nearly one direction the force feels one
 /// (force/penalty.hpp), so that an error of one among fifty is hardly felt, and of one that is
 /// alone, all of it. Directions are those in which first bodies are pushed, whichever is the tool.
-/// Does not change widths and urgencies.
+/// Nothing where the budget ends before that. Does not change widths and urgencies.
 /// Cost: kBatchUnits for sixteen felt regions of one pair of bodies, plus O(active)
 void tell_lone(Work& work) noexcept;
 

@@ -150,7 +150,7 @@ void find_bricks(const PairFrame& frame, Looks& looks) noexcept {
   };
   const image::RegionTriangle* from[kMostLooks];
   for (std::uint32_t i = 0; i < kMostLooks; ++i) from[i] = &triangle(i < looks.count ? i : 0);
-  gather(from, corners);
+  gather_corners(from, corners);
   const float cell = frame.b->proximity_grid->cell * frame.b_to_a.scale;
   std::uint32_t long_ones = find_centres(corners, cell, cells) & ((1u << looks.count) - 1);
   for (; long_ones != 0; long_ones &= long_ones - 1) {

@@ -129,14 +129,15 @@ struct Demand {
 /// so that what costs more to search may stay open wider. A budget that is far too small for the
 /// searches goes to following the witnesses instead where that brings them nearer (follow.hpp).
 /// After a jump regions are searched as long as the budget seems to do for all; from then on a
-/// survey comes first (survey.hpp), and then the deepest contacts. So it is for fast bodies with
-/// many contacts (Work::anew). Whatever ends it, a tick that feels nothing goes on for a first
-/// contact with what the budget has in reserve (reserve.hpp), every interval holds its distance,
-/// and every witness nearer than delta is a contact, or as many of them as there is time to report
-/// (crowd.hpp). Where triangles cross, the pieces that they belong to give the depth and the curve
-/// in which they do the direction (crossing.hpp); for that, at most half of a budget is left.
-/// Whether one body is inside the other is asked wherever they may have passed through each other,
-/// in as many ticks as the budget takes for it (containment.hpp).
+/// survey comes first (survey.hpp), and then the deepest contacts, first those that push alone
+/// (lone.hpp). So it is for fast bodies with many contacts (Work::anew). Whatever ends it, a tick
+/// that feels nothing goes on for a first contact with what the budget has in reserve
+/// (reserve.hpp), every interval holds its distance, and every witness nearer than delta is a
+/// contact, or as many of them as there is time to report (crowd.hpp). Where triangles cross, the
+/// pieces that they belong to give the depth and the curve in which they do the direction
+/// (crossing.hpp); for that, at most half of a budget is left. Whether one body is inside the other
+/// is asked wherever they may have passed through each other, in as many ticks as the budget takes
+/// for it (containment.hpp).
 ///
 /// A contact's pieces are those of level 0 that hold the witnesses. Stages and counts go to the
 /// tally. Cost: the budget and its reserve, plus O(regions), plus one witness of each near region.

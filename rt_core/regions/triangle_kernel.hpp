@@ -251,8 +251,8 @@ PALPATE_LANES std::uint32_t distances(const image::RegionTriangle* const (&a)[kB
   constexpr float kShrunk2 = 1.0f / (kStretch * kStretch);
   Work& work = work_in(scratch);
   TriangleLanes& lanes = scratch.lanes;
-  gather(a, lanes.a);
-  gather(b, lanes.b);
+  gather_corners(a, lanes.a);
+  gather_corners(b, lanes.b);
   std::uint32_t crossing = 0;
   for (int lane = 0; lane < static_cast<int>(kBatch); lane += kLanes) {
     const Vectors origin = corner(lanes.b, 0, lane);
@@ -302,8 +302,8 @@ void separations(const image::RegionTriangle* const (&a)[kBatch],
                  const image::RegionTriangle* const (&b)[kBatch], const Transform& a_to_b,
                  Vec3f along, KernelScratch& scratch, float (&out)[kBatch]) noexcept {
   TriangleLanes& lanes = scratch.lanes;
-  gather(a, lanes.a);
-  gather(b, lanes.b);
+  gather_corners(a, lanes.a);
+  gather_corners(b, lanes.b);
   const Vectors n = {all(along.x), all(along.y), all(along.z)};
   for (int lane = 0; lane < static_cast<int>(kBatch); lane += kLanes) {
     // Near the pair: what lies far from its body's origin is no less exact.
