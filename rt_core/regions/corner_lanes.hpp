@@ -9,8 +9,9 @@
 namespace palpate::regions {
 namespace {
 
-/// Corners of sixteen triangles, component by component. Four components of four triangles at a
-/// time where there are vectors: stores of single floats would be waited for.
+/// Corners of sixteen triangles, component by component, as they are stored: in the coordinates of
+/// their image. A triangle may be named more than once. O(kBatch). Four components of four
+/// triangles at a time where there are vectors: stores of single floats would be waited for.
 PALPATE_LANES void gather_corners(const image::RegionTriangle* const (&from)[kBatch],
                                   float (&out)[9][kBatch]) noexcept {
 #if PALPATE_VECTORS

@@ -190,6 +190,7 @@ bool is_long(const image::RegionTriangle& t, float cell) noexcept {
 /// Calls by name, not through a table, so that the stack report counts them.
 void look_step(const PairFrame& frame, std::uint32_t step, Looks& looks) noexcept {
   PALPATE_ASSERT(step < kLookSteps && looks.count <= kMostLooks);
+  if (looks.count == 0) return;
   switch (step) {
     case 0:
       return ask_for_triangles(frame, looks);

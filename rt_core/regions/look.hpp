@@ -76,10 +76,11 @@ inline constexpr std::uint32_t kLookSteps = 4;
 
 /// Each step asks for what the next one reads: where others' steps come in between, no one waits.
 /// @param step  0 to kLookSteps - 1, in that order
-/// Precondition: can_look(frame). O(count)
+/// @param looks  none, too
+/// Precondition: can_look(frame). O(kMostLooks)
 void look_step(const PairFrame& frame, std::uint32_t step, Looks& looks) noexcept;
 
-/// All steps, one after the other.
+/// All steps, one after the other. Precondition and cost: look_step().
 void look_from(const PairFrame& frame, Looks& looks) noexcept;
 
 /// Adds looks from triangles that are spread over a region.
