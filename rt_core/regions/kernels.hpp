@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two inner loops of the region engine, for the widest instruction set at hand: one box against
-// the boxes of a node, and sixteen pairs of triangles.
+// The inner loops of the region engine, for the widest instruction set at hand: one box against the
+// boxes of a node, sixteen pairs of triangles, and where sixteen triangles lie in a grid.
 //
 // Every table gives the same bits (simd.hpp). They are chosen once, when an engine is made.
 #pragma once
@@ -60,6 +60,12 @@ struct BoxTest {
       64) float passed[kBatch];  ///< least bounds of what was not near in any call, lane by lane
 };
 
+/// Where places lie in a proximity grid.
+struct BrickLanes {
+  alignas(64) std::int32_t brick[kBatch];     ///< into proximity_bricks
+  alignas(64) std::int32_t in_brick[kBatch];  ///< cell of it, 0 to kBrickCells - 1
+};
+
 struct Kernels {
   const char* name;
 
@@ -113,6 +119,15 @@ struct Kernels {
   /// Closest points of the kBatch pairs in scratch.lanes; where a pair crosses, of its edges and
   /// corners.
   void (*witnesses)(KernelScratch& scratch, WitnessLanes& out) noexcept;
+
+  /// The cells of a grid in which the centres of kBatch triangles lie; of a triangle with an edge
+  /// longer than the root of long2, some other place of it, which its number tells: places of
+  /// numbers in a row are spread over it. What lies outside of the grid is in the outermost cells.
+  /// @param long2    in the coordinates of the triangles' image
+  /// @param to_grid  from these to the grid's
+  void (*find_bricks)(const image::RegionTriangle* const (&from)[kBatch],
+                      const std::uint32_t (&numbers)[kBatch], float long2, const Transform& to_grid,
+                      const image::ProximityGrid& grid, BrickLanes& out) noexcept;
 };
 
 /// The widest table that this processor and its operating system can run. Asks the processor: not

@@ -5,6 +5,7 @@
 #if defined(__AVX2__)
 
 #include "rt_core/regions/box_kernel.hpp"
+#include "rt_core/regions/look_kernel.hpp"
 #include "rt_core/regions/triangle_kernel.hpp"
 
 namespace palpate::regions {
@@ -12,7 +13,7 @@ namespace palpate::regions {
 const Kernels* kernels_avx2() noexcept {
   static constexpr Kernels kTable = {"avx2",        test_boxes,       triangle_distances,
                                      triangle_ways, triangle_courses, separations,
-                                     witnesses};
+                                     witnesses,     find_bricks};
   return &kTable;
 }
 

@@ -4,13 +4,14 @@
 
 #include <cstdint>
 
+#include "rt_core/regions/kernels.hpp"
 #include "rt_core/regions/near_pairs.hpp"
 #include "rt_core/regions/pair_frame.hpp"
 
 namespace palpate::regions {
 
 /// In one call, at most.
-inline constexpr std::uint32_t kMostLooks = 16;
+inline constexpr std::uint32_t kMostLooks = kBatch;
 /// So many looks by themselves count as one work unit, beside what it takes to measure what they
 /// find. Many that are under way at once wait for memory less (survey.cpp).
 inline constexpr std::uint32_t kLooksPerUnit = 4;
@@ -20,11 +21,10 @@ inline bool can_look(const PairFrame& frame) noexcept {
   return frame.b->proximity_grid != nullptr && !frame.a->region_runs.empty();
 }
 
-inline constexpr float kThird = 1.0f / 3;  ///< of a triangle's corners, for its centre
-
 /// In image coordinates.
 inline Vec3f centre_of(const image::RegionTriangle& t) noexcept {
   const float* c = t.corners;
+  constexpr float kThird = 1.0f / 3;
   return {kThird * (c[0] + c[3] + c[6]), kThird * (c[1] + c[4] + c[7]),
           kThird * (c[2] + c[5] + c[8])};
 }
@@ -35,9 +35,7 @@ inline Vec3f centre_of(const image::RegionTriangle& t) noexcept {
 bool is_long(const image::RegionTriangle& t, float cell) noexcept;
 
 /// A place in the image coordinates of one body in those of the other.
-/// @param p  Vec3f, or several places by lanes (simd.hpp): the same bits
-template <class Place>
-Place at_place(const Transform& m, Place p) noexcept {
+inline Vec3f at_place(const Transform& m, Vec3f p) noexcept {
   const float* r = m.rotation;
   return {m.scale * (r[0] * p.x + r[1] * p.y + r[2] * p.z) + m.translation[0],
           m.scale * (r[3] * p.x + r[4] * p.y + r[5] * p.z) + m.translation[1],
@@ -78,10 +76,11 @@ inline constexpr std::uint32_t kLookSteps = 4;
 /// @param step  0 to kLookSteps - 1, in that order
 /// @param looks  none, too
 /// Precondition: can_look(frame). O(kMostLooks)
-void look_step(const PairFrame& frame, std::uint32_t step, Looks& looks) noexcept;
+void look_step(const Kernels& kernels, const PairFrame& frame, std::uint32_t step,
+               Looks& looks) noexcept;
 
 /// All steps, one after the other. Precondition and cost: look_step().
-void look_from(const PairFrame& frame, Looks& looks) noexcept;
+void look_from(const Kernels& kernels, const PairFrame& frame, Looks& looks) noexcept;
 
 /// Adds looks from triangles that are spread over a region.
 /// @param from   number of the first look; those that follow each other lie apart

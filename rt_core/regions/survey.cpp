@@ -238,7 +238,8 @@ class Survey {
       sent = send(regions, sent, most, choose, on_their_way[k % kLookSteps]);
       for (std::uint32_t step = 0; step < kLookSteps && step <= k; ++step) {
         Party& party = on_their_way[(k - step) % kLookSteps];
-        if (party.looks.count > 0) look_step(*party.frame, step, party.looks);
+        if (party.looks.count == 0) continue;
+        look_step(*work_.memory.kernels, *party.frame, step, party.looks);
       }
       if (sent == regions.size()) --left;
       if (k + 1 < kLookSteps) continue;
@@ -268,18 +269,16 @@ class Survey {
   void measure_all_of(const Party& party) noexcept {
     work_.pace.charge((party.looks.count + kTogetherPerUnit / 2) / kTogetherPerUnit);
     for (std::uint32_t i = 0; i < party.looks.count; ++i) {
-      const std::uint32_t index = party.of[i];
-      if (spread_) ++work_.kept_of(work_.active()[index]).seeds.dives;
-      batch_.add(index, party.looks.pair(i));
+      batch_.add(party.of[i], party.looks.pair(i));
     }
   }
 
   void take(std::uint32_t index, const Witness& pair) noexcept {
     const Active& item = work_.active()[index];
     Witness& witness = work_.witness_of(item);
+    if (witness.known() && !(pair.distance < witness.distance)) return;
     const bool was_felt = work_.is_felt(item);
     const bool crossed = work_.is_crossing(item);
-    if (witness.known() && !(pair.distance < witness.distance)) return;
     witness = pair;
     // Every look as a seed would cost a fifth of the survey.
     if (spread_) note_seed(*work_.frame_of(item).a, pair, work_.kept_of(item).seeds);

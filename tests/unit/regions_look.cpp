@@ -20,6 +20,8 @@ const BakedBody& ball() {
   return body;
 }
 
+const regions::Kernels& kernels() { return regions::best_kernels(); }
+
 /// Both lie in one place.
 regions::PairFrame coincident(const ImageView& view) {
   regions::PairFrame frame;
@@ -53,7 +55,7 @@ TEST(RegionLook, What_is_found_is_a_cell_away_at_most) {
   for (std::uint32_t region = 0; region < view.regions.size(); ++region) {
     regions::Looks looks;
     regions::look_over(frame, region, 3, regions::kMostLooks, looks);
-    regions::look_from(frame, looks);
+    regions::look_from(kernels(), frame, looks);
     for (std::uint32_t i = 0; i < looks.count; ++i) {
       const regions::Witness pair = looks.pair(i);
       EXPECT_EQ(view.region_triangles[pair.a].region, region);
@@ -90,7 +92,7 @@ TEST(RegionLook, Looks_beside_a_triangle_are_of_the_others_of_its_region_that_fo
       for (const std::uint32_t count : {1u, 6u, regions::kMostLooks}) {
         regions::Looks looks;
         regions::look_beside(frame, region, triangle, count, looks);
-        regions::look_from(frame, looks);
+        regions::look_from(kernels(), frame, looks);
         ASSERT_EQ(looks.count, std::min(count, run.count - 1));
         for (std::uint32_t i = 0; i < looks.count; ++i) {
           const regions::Witness pair = looks.pair(i);
@@ -113,14 +115,14 @@ TEST(RegionLook, Looks_of_several_regions_go_together) {
   regions::look_beside(frame, 1, view.region_runs[1].first, 4, together);
   regions::look_over(frame, 2, 0, 6, together);
   ASSERT_EQ(together.count, 15u);
-  regions::look_from(frame, together);
+  regions::look_from(kernels(), frame, together);
   regions::Looks alone[3];
   regions::look_over(frame, 0, 7, 5, alone[0]);
   regions::look_beside(frame, 1, view.region_runs[1].first, 4, alone[1]);
   regions::look_over(frame, 2, 0, 6, alone[2]);
   std::uint32_t i = 0;
   for (regions::Looks& looks : alone) {
-    regions::look_from(frame, looks);
+    regions::look_from(kernels(), frame, looks);
     for (std::uint32_t k = 0; k < looks.count; ++k, ++i) {
       EXPECT_TRUE(together.pair(i).same_pair(looks.pair(k)));
     }
@@ -139,7 +141,7 @@ TEST(RegionLook, A_long_triangle_is_looked_from_all_along) {
       continue;
     regions::Looks looks;
     regions::look_over(frame, region, 0, regions::kMostLooks, looks);
-    regions::look_from(frame, looks);
+    regions::look_from(kernels(), frame, looks);
     double least = 1, most = -1;
     for (std::uint32_t i = 0; i < looks.count; ++i) {
       const regions::Witness pair = looks.pair(i);
@@ -159,7 +161,7 @@ TEST(RegionLook, Far_outside_something_is_named) {
     std::fill_n(frame.a_to_b.translation, 3, away);
     regions::Looks looks;
     regions::look_over(frame, 0, 0, regions::kMostLooks, looks);
-    regions::look_from(frame, looks);
+    regions::look_from(kernels(), frame, looks);
     for (std::uint32_t i = 0; i < looks.count; ++i) {
       const regions::Witness pair = looks.pair(i);
       EXPECT_LT(pair.b, view.region_triangles.size());
