@@ -174,13 +174,20 @@ Work& work_in(KernelScratch& scratch) noexcept { return *::new (scratch.rows) Wo
   w.best = {all(std::numeric_limits<float>::max()), Vectors{}, Vectors{}};
 }
 
+/// Edges that all fit in registers are held there; where they do not, copies of them are not to be
+/// held on the stack.
+constexpr int kTogether = kLanes == 16 ? 3 : 1;
+
 template <bool kPoints>
 [[gnu::noinline]] void edges(Work& w) noexcept {
-  Closest best = w.best;
+  Closest best{w.best.squared, {}, {}};
+  if constexpr (kPoints) best = w.best;
   for (int i = 0; i < 3; ++i) {
+#pragma GCC unroll kTogether
     for (int k = 0; k < 3; ++k) edge_and_edge<kPoints>(w.a, i, w.b, k, best);
   }
-  w.best = best;
+  w.best.squared = best.squared;
+  if constexpr (kPoints) w.best = best;
 }
 
 template <bool kPoints>
