@@ -106,15 +106,14 @@ struct Heights {
   Floats side[3][3];  ///< [corner][edge] >= 0: inside of that edge, times |normal| |edge|
 };
 
-PALPATE_LANES Heights heights_of(const Triangles& corners, const Triangles& face) noexcept {
-  Heights h;
+PALPATE_LANES void find_heights(const Triangles& corners, const Triangles& face,
+                                Heights& h) noexcept {
   for (int c = 0; c < 3; ++c) {
     for (int e = 0; e < 3; ++e) {
       h.side[c][e] = dot(face.inward[e], corners.corner[c] - face.corner[e]);
     }
     h.height[c] = dot(face.normal, corners.corner[c] - face.corner[0]);
   }
-  return h;
 }
 
 template <bool kPoints, bool kCornersOfA>
@@ -171,7 +170,6 @@ Work& work_in(KernelScratch& scratch) noexcept { return *::new (scratch.rows) Wo
 [[gnu::noinline]] void complete_both(Work& w) noexcept {
   complete(w.a);
   complete(w.b);
-  w.best = {all(std::numeric_limits<float>::max()), Vectors{}, Vectors{}};
 }
 
 /// Edges that all fit in registers are held there; where they do not, copies of them are not to be
@@ -180,8 +178,7 @@ constexpr int kTogether = kLanes == 16 ? 3 : 1;
 
 template <bool kPoints>
 [[gnu::noinline]] void edges(Work& w) noexcept {
-  Closest best{w.best.squared, {}, {}};
-  if constexpr (kPoints) best = w.best;
+  Closest best{all(std::numeric_limits<float>::max()), {}, {}};
   for (int i = 0; i < 3; ++i) {
 #pragma GCC unroll kTogether
     for (int k = 0; k < 3; ++k) edge_and_edge<kPoints>(w.a, i, w.b, k, best);
@@ -192,9 +189,9 @@ template <bool kPoints>
 
 template <bool kPoints>
 [[gnu::noinline]] void corners(Work& w) noexcept {
-  w.of_a = heights_of(w.a, w.b);
+  find_heights(w.a, w.b, w.of_a);
   corners_and_face<kPoints, true>(w.a, w.b, w.of_a, w.best);
-  w.of_b = heights_of(w.b, w.a);
+  find_heights(w.b, w.a, w.of_b);
   corners_and_face<kPoints, false>(w.b, w.a, w.of_b, w.best);
 }
 
