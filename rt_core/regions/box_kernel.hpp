@@ -98,7 +98,7 @@ PALPATE_LANES Ints key_of(Floats squared, Vectors centres, int lane) noexcept {
 }
 
 std::uint32_t test_boxes(const Box& box, const Transform& to_node, Vec3f course,
-                         const image::RegionNode& node, float unit2, float below,
+                         const image::RegionNode& node, float unit2, float below, Order order,
                          BoxTest& out) noexcept {
   const Vec3f half = 0.5f * course;
   const Box here = mapped(box, to_node, half);
@@ -111,7 +111,11 @@ std::uint32_t test_boxes(const Box& box, const Transform& to_node, Vec3f course,
     near |= bits(is_near) << lane;
   }
   near &= (1u << node.children) - 1u;
-  if (near == 0) return near;  // half of all: no order to find
+  if (order == Order::any || near == 0) return near;  // most: no order to find
+  if ((near & (near - 1)) == 0) {
+    out.place[__builtin_ctz(near)] = 0;
+    return near;
+  }
   alignas(64) std::int32_t keys[kBatch];
   for (int lane = 0; lane < kWidth; lane += kLanes) {
     store(key_of(load(out.squared + lane), centres_apart(here, node, lane), lane), keys + lane);

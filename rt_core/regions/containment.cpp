@@ -52,7 +52,8 @@ bool visit_touched(const Kernels& kernels, const ImageView& body, const Box& box
     if (!pace.go_on()) return false;
     pace.charge(1);
     const RegionNode& node = body.region_nodes[walk.nodes[--walk.size]];
-    std::uint32_t met = kernels.test_boxes(box, kStay, {}, node, 1, kRoom * kRoom, test);
+    std::uint32_t met =
+        kernels.test_boxes(box, kStay, {}, node, 1, kRoom * kRoom, Order::any, test);
     for (; met != 0; met &= met - 1) {
       const auto child = node.first + static_cast<std::uint32_t>(__builtin_ctz(met));
       if (node.leaf != 0) {

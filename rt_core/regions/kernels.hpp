@@ -49,13 +49,17 @@ struct KernelScratch {
   alignas(64) float rows[112][kBatch];
 };
 
+/// Whether test_boxes() is asked which of the boxes that are near are nearer.
+enum class Order : std::uint8_t { any, by_distance };
+
 /// What test_boxes() says of the boxes of a node, and of those of earlier nodes.
 struct BoxTest {
   BoxTest() noexcept {
     for (float& least : passed) least = std::numeric_limits<float>::max();
   }
   alignas(64) float squared[kBatch] = {};       ///< bounds
-  alignas(64) std::int32_t place[kBatch] = {};  ///< of those near: how many near are farther
+  alignas(64) std::int32_t place[kBatch] = {};  ///< of those near: how many near are farther; only
+                                                ///< by_distance
   alignas(
       64) float passed[kBatch];  ///< least bounds of what was not near in any call, lane by lane
 };
@@ -81,7 +85,7 @@ struct Kernels {
   /// @param below  squared, in the unit of the bounds; nearer boxes are near
   /// @return bit i set where child i is near
   std::uint32_t (*test_boxes)(const Box& box, const Transform& to_node, Vec3f course,
-                              const image::RegionNode& node, float unit2, float below,
+                              const image::RegionNode& node, float unit2, float below, Order order,
                               BoxTest& out) noexcept;
 
   /// Squared distances of kBatch pairs of triangles, in the unit of b's image; crossing pairs have

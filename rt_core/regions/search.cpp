@@ -205,11 +205,12 @@ class Search {
             const RegionNode& over_other) noexcept {
     const Tree& tree = trees_[of_a ? 0 : 1];
     const RegionNode& parent = tree.image.region_nodes[node];
+    const bool of_triangles = parent.leaf != 0 && over_other.leaf != 0;
     pace_.charge(1);
-    std::uint32_t near =
-        kernels_.test_boxes(box_of(over_other, slot_of(other)), tree.to_here, tree.course, parent,
-                            tree.scale2, threshold_squared_, test_);
-    if (parent.leaf != 0 && over_other.leaf != 0) {
+    std::uint32_t near = kernels_.test_boxes(box_of(over_other, slot_of(other)), tree.to_here,
+                                             tree.course, parent, tree.scale2, threshold_squared_,
+                                             of_triangles ? Order::any : Order::by_distance, test_);
+    if (of_triangles) {
       const std::uint32_t single = over_other.first + slot_of(other);
       for (; near != 0; near &= near - 1) {
         const auto slot = static_cast<std::uint32_t>(__builtin_ctz(near));
@@ -464,7 +465,7 @@ std::uint32_t nearest_child(const Kernels& kernels, const Box& box, const Transf
                             const RegionNode& node, Pace& pace) noexcept {
   pace.charge(1);
   BoxTest test;
-  static_cast<void>(kernels.test_boxes(box, to_node, {}, node, 1, kFar, test));
+  static_cast<void>(kernels.test_boxes(box, to_node, {}, node, 1, kFar, Order::by_distance, test));
   const auto last = static_cast<std::int32_t>(node.children) - 1;
   std::uint32_t nearest = 0;
   for (std::uint32_t i = 0; i < node.children; ++i) nearest = test.place[i] == last ? i : nearest;

@@ -118,7 +118,7 @@ class Sweep {
   std::uint32_t test(const Box& box, const Transform& to_node, const RegionNode& node,
                      float scale2) noexcept {
     pace_.charge(1);
-    return kernels_.test_boxes(box, to_node, {}, node, scale2, limit_squared_, test_);
+    return kernels_.test_boxes(box, to_node, {}, node, scale2, limit_squared_, Order::any, test_);
   }
 
   void push(const Candidate& c) noexcept {

@@ -329,7 +329,7 @@ TEST(RegionKernels, BoxBound_never_exceeds_the_distance_of_two_points_of_the_box
     const Boxes boxes = random_boxes(random);
     BoxTest test;
     const std::uint32_t near =
-        best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 0.25f, test);
+        best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 0.25f, Order::any, test);
     for (std::uint32_t i = 0; i < kBatch; ++i) {
       const double bound = std::sqrt(double(test.squared[i]));
       ASSERT_LE(bound, nearest_points(random, boxes.corners_of_one, boxes.corners[i]) +
@@ -348,8 +348,8 @@ TEST(RegionKernels, BoxBound_holds_all_along_a_course) {
     const Boxes boxes = random_boxes(random);
     const Vec3f course = vec_cast<float>(in_cube(random, 0.3));
     BoxTest at_rest, test;
-    best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 0.25f, at_rest);
-    best_kernels().test_boxes(boxes.one, boxes.map, course, boxes.node, 1, 0.25f, test);
+    best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 0.25f, Order::any, at_rest);
+    best_kernels().test_boxes(boxes.one, boxes.map, course, boxes.node, 1, 0.25f, Order::any, test);
     for (std::uint32_t i = 0; i < kBatch; ++i) {
       const double bound = std::sqrt(double(test.squared[i]));
       const double rounding = 1e-6 * (1 + double(boxes.map.scale));
@@ -374,16 +374,16 @@ TEST(RegionKernels, BoxBound_of_aligned_boxes_is_their_distance) {
     for (auto& half : boxes.node.half) half[i] = 0.5f;
   }
   BoxTest test;
-  best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 1, test);
+  best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 1, Order::any, test);
   EXPECT_EQ(test.squared[5], 2.0f * 2.0f + 1.0f);
-  best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 9, 1, test);
+  best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 9, 1, Order::any, test);
   EXPECT_EQ(test.squared[5], 9 * (2.0f * 2.0f + 1.0f));
   // What goes along a face comes no nearer; what goes away is nearest where it starts.
-  best_kernels().test_boxes(boxes.one, boxes.map, {0, 0, 4}, boxes.node, 1, 1, test);
+  best_kernels().test_boxes(boxes.one, boxes.map, {0, 0, 4}, boxes.node, 1, 1, Order::any, test);
   EXPECT_EQ(test.squared[5], 2.0f * 2.0f + 1.0f);
-  best_kernels().test_boxes(boxes.one, boxes.map, {1, 0, 0}, boxes.node, 1, 1, test);
+  best_kernels().test_boxes(boxes.one, boxes.map, {1, 0, 0}, boxes.node, 1, 1, Order::any, test);
   EXPECT_EQ(test.squared[5], 2.0f * 2.0f + 1.0f);
-  best_kernels().test_boxes(boxes.one, boxes.map, {-1, 0, 0}, boxes.node, 1, 1, test);
+  best_kernels().test_boxes(boxes.one, boxes.map, {-1, 0, 0}, boxes.node, 1, 1, Order::any, test);
   EXPECT_EQ(test.squared[5], 1.0f + 1.0f);
 }
 
@@ -396,8 +396,8 @@ TEST(RegionKernels, Boxes_are_placed_by_how_near_they_are) {
     boxes.node.children = 1 + static_cast<std::uint32_t>(round) % kBatch;
     const float below = round % 3 == 0 ? kFar : 0.25f;
     BoxTest test;
-    const std::uint32_t near =
-        best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, below, test);
+    const std::uint32_t near = best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1,
+                                                         below, Order::by_distance, test);
     const Vec3d centre =
         mapped(boxes.map, {double(boxes.one.x[3]), double(boxes.one.y[3]), double(boxes.one.z[3])});
     const auto apart = [&](std::uint32_t i) {
@@ -437,11 +437,11 @@ TEST(RegionKernels, BoxTest_keeps_the_least_of_what_was_passed_over) {
   boxes.node.children = kBatch;
   BoxTest test;
   std::fill_n(test.passed, kBatch, 7.0f);
-  best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 1, test);
+  best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 1, Order::any, test);
   EXPECT_EQ(test.passed[3], 7.0f);
   boxes.map = in_float(Mat3d{}, Vec3d{2, 0, 0}, 1);
   boxes.node.axes[0][3] = 1;
-  best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 1, test);
+  best_kernels().test_boxes(boxes.one, boxes.map, {}, boxes.node, 1, 1, Order::any, test);
   EXPECT_EQ(test.passed[3], 4.0f);
   EXPECT_EQ(test.passed[2], 7.0f);
 }
@@ -545,14 +545,17 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
       ASSERT_EQ(std::memcmp(found_first.on_a, found_other.on_a, sizeof found_first.on_a), 0);
       ASSERT_EQ(found_first.crossing, found_other.crossing);
     }
-    BoxTest expected;
     const Vec3f course{0.1f, -0.02f, 0.05f};
-    const std::uint32_t near =
-        tables()[0]->test_boxes(boxes.one, boxes.map, course, boxes.node, 1.5f, 1, expected);
-    for (const Kernels* table : tables()) {
-      BoxTest test;
-      ASSERT_EQ(near, table->test_boxes(boxes.one, boxes.map, course, boxes.node, 1.5f, 1, test));
-      ASSERT_EQ(std::memcmp(&expected, &test, sizeof test), 0) << table->name;
+    for (const Order order : {Order::any, Order::by_distance}) {
+      BoxTest expected;
+      const std::uint32_t near = tables()[0]->test_boxes(boxes.one, boxes.map, course, boxes.node,
+                                                         1.5f, 1, order, expected);
+      for (const Kernels* table : tables()) {
+        BoxTest test;
+        ASSERT_EQ(near, table->test_boxes(boxes.one, boxes.map, course, boxes.node, 1.5f, 1, order,
+                                          test));
+        ASSERT_EQ(std::memcmp(&expected, &test, sizeof test), 0) << table->name;
+      }
     }
   }
 }
