@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles side by side. Private to source files, as simd.hpp is.
+// Triangles side by side. Private to the kernels.
 #pragma once
 
 #include "rt_core/image/region_format.hpp"
@@ -9,35 +9,61 @@
 namespace palpate::regions {
 namespace {
 
-/// Corners of sixteen triangles, component by component, as they are stored: in the coordinates of
-/// their image. A triangle may be named more than once. O(kBatch). Four components of four
-/// triangles at a time where there are vectors: stores of single floats would be waited for.
-PALPATE_LANES void gather_corners(const image::RegionTriangle* const (&from)[kBatch],
-                                  float (&out)[9][kBatch]) noexcept {
+/// Of as many triangles as there are lanes, as they are stored: in the coordinates of their image.
+struct CornerLanes {
+  Vectors corner[3];
+};
+
 #if PALPATE_VECTORS
-  for (std::uint32_t i = 0; i < kBatch; i += 4) {
-    for (int c = 0; c < 8; c += 4) {
-      const Four r0 = four(from[i]->corners + c), r1 = four(from[i + 1]->corners + c);
-      const Four r2 = four(from[i + 2]->corners + c), r3 = four(from[i + 3]->corners + c);
-      const Four low01 = __builtin_shufflevector(r0, r1, 0, 4, 1, 5);
-      const Four high01 = __builtin_shufflevector(r0, r1, 2, 6, 3, 7);
-      const Four low23 = __builtin_shufflevector(r2, r3, 0, 4, 1, 5);
-      const Four high23 = __builtin_shufflevector(r2, r3, 2, 6, 3, 7);
-      store(__builtin_shufflevector(low01, low23, 0, 1, 4, 5), out[c] + i);
-      store(__builtin_shufflevector(low01, low23, 2, 3, 6, 7), out[c + 1] + i);
-      store(__builtin_shufflevector(high01, high23, 0, 1, 4, 5), out[c + 2] + i);
-      store(__builtin_shufflevector(high01, high23, 2, 3, 6, 7), out[c + 3] + i);
-    }
-    store(Four{from[i]->corners[8], from[i + 1]->corners[8], from[i + 2]->corners[8],
-               from[i + 3]->corners[8]},
-          out[8] + i);
+
+/// Four components of a triangle in every four lanes, and of the next one, ...
+struct Rows {
+  Floats of[4];
+};
+
+PALPATE_LANES Rows rows_of(const image::RegionTriangle* const* from, int component) noexcept {
+  Rows rows;
+  for (int i = 0; i < 4; ++i) {
+    const float* at[kLanes / 4];
+    for (int k = 0; k < kLanes / 4; ++k) at[k] = from[4 * k + i]->corners + component;
+    rows.of[i] = fours(at);
   }
-#else
-  for (std::uint32_t i = 0; i < kBatch; ++i) {
-    for (int c = 0; c < 9; ++c) out[c][i] = from[i]->corners[c];
-  }
-#endif
+  return rows;
 }
+
+/// Each component of all: four by four, turned over.
+PALPATE_LANES void turn_over(const Rows& rows, Floats (&out)[4]) noexcept {
+  const Floats first01 = low_mixed(rows.of[0], rows.of[1]);
+  const Floats first23 = low_mixed(rows.of[2], rows.of[3]);
+  const Floats last01 = high_mixed(rows.of[0], rows.of[1]);
+  const Floats last23 = high_mixed(rows.of[2], rows.of[3]);
+  out[0] = low_halves(first01, first23);
+  out[1] = high_halves(first01, first23);
+  out[2] = low_halves(last01, last23);
+  out[3] = high_halves(last01, last23);
+}
+
+/// In registers all the way: what is stored by fours cannot be read by more before it has reached
+/// the cache.
+/// @param from  as many as there are lanes; one may be named more than once
+PALPATE_LANES CornerLanes corners_of(const image::RegionTriangle* const* from) noexcept {
+  Floats first[4], second[4], last[4];
+  turn_over(rows_of(from, 0), first);
+  turn_over(rows_of(from, 4), second);
+  turn_over(rows_of(from, 5), last);
+  return {{{first[0], first[1], first[2]},
+           {first[3], second[0], second[1]},
+           {second[2], second[3], last[3]}}};
+}
+
+#else
+
+PALPATE_LANES CornerLanes corners_of(const image::RegionTriangle* const* from) noexcept {
+  const float* c = from[0]->corners;
+  return {{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}}};
+}
+
+#endif
 
 }  // namespace
 }  // namespace palpate::regions

@@ -82,8 +82,7 @@ void sift(Work& work, const Active& item, double way, Doubtful& doubtful) noexce
       for (std::uint32_t i = 0; i < kBatch; ++i) {
         pairs[i] = kept.near.pairs[doubtful.of[first + (i < count ? i : 0)]];
       }
-      separate(*work.memory.kernels, work.frame_of(item), *work.memory.search, work.pace, pairs,
-               item.way.along, apart);
+      separate(*work.memory.kernels, work.frame_of(item), work.pace, pairs, item.way.along, apart);
     }
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t k = doubtful.of[first + i];

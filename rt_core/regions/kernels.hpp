@@ -30,7 +30,8 @@ struct Transform {
   float scale;
 };
 
-/// Pairs of triangles by their corners, component by component, in coordinates near the pair.
+/// Pairs of triangles by their corners, component by component, in coordinates near the pair:
+/// what witnesses() is asked for.
 struct TriangleLanes {
   alignas(64) float a[9][kBatch];  ///< corner, then axis
   alignas(64) float b[9][kBatch];
@@ -118,7 +119,7 @@ struct Kernels {
   /// which is in its coordinates. No pair is nearer than that.
   void (*separations)(const image::RegionTriangle* const (&a)[kBatch],
                       const image::RegionTriangle* const (&b)[kBatch], const Transform& a_to_b,
-                      Vec3f along, KernelScratch& scratch, float (&out)[kBatch]) noexcept;
+                      Vec3f along, float (&out)[kBatch]) noexcept;
 
   /// Closest points of the kBatch pairs in scratch.lanes; where a pair crosses, of its edges and
   /// corners.

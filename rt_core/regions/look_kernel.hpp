@@ -56,16 +56,11 @@ void find_bricks(const image::RegionTriangle* const (&from)[kBatch],
   static_assert(image::kBrickEdge == 4);
   constexpr int kShift = 2;
   constexpr std::int32_t kWithin = image::kBrickEdge - 1;
-  alignas(64) float corners[9][kBatch];
-  gather_corners(from, corners);
   Shares shares;
   bool is_spread = false;
   for (int lane = 0; lane < static_cast<int>(kBatch); lane += kLanes) {
-    const auto corner = [&](int k) {
-      return Vectors{load(corners[k] + lane), load(corners[k + 1] + lane),
-                     load(corners[k + 2] + lane)};
-    };
-    const Vectors p = corner(0), q = corner(3), r = corner(6);
+    const CornerLanes corners = corners_of(from + lane);
+    const Vectors p = corners.corner[0], q = corners.corner[1], r = corners.corner[2];
     Vectors place = all(1.0f / 3) * (p + q + r);
     const Ints is_long = is_longer(p, q, r, long2);
     if (bits(is_long) != 0) {

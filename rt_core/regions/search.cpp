@@ -453,10 +453,10 @@ Beside nearest_beyond(const Around& at, const float (&distances)[kBatch]) noexce
 }
 
 /// No pair of the region is nearer along a witness's way than the witness, which is the first.
-bool is_lowest(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-               const Around& at, Vec3f along) noexcept {
+bool is_lowest(const Kernels& kernels, const PairFrame& frame, Pace& pace, const Around& at,
+               Vec3f along) noexcept {
   float apart[kBatch];
-  separate(kernels, frame, scratch, pace, at.pairs, along, apart);
+  separate(kernels, frame, pace, at.pairs, along, apart);
   return apart[nearest_within(at, apart)] > apart[0] - kAsNear;
 }
 
@@ -533,7 +533,7 @@ Way way_of(const WayLanes& ways, std::uint32_t lane, const Witness& measured) no
   return {(1 / length) * way, measured.a, measured.b};
 }
 
-void separate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+void separate(const Kernels& kernels, const PairFrame& frame, Pace& pace,
               const Witness (&pairs)[kBatch], Vec3f along, float (&out)[kBatch]) noexcept {
   const RegionTriangle* a[kBatch];
   const RegionTriangle* b[kBatch];
@@ -542,7 +542,7 @@ void separate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scr
     b[i] = &frame.b->region_triangles[pairs[i].b];
   }
   pace.charge(kSeparationUnits);
-  kernels.separations(a, b, frame.a_to_b, along, scratch.kernel, out);
+  kernels.separations(a, b, frame.a_to_b, along, out);
   const float scale_b = sqrt_of(frame.scale2_b);
   for (float& apart : out) apart *= scale_b;
 }
@@ -552,7 +552,7 @@ void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratc
   if (out_beside != nullptr) *out_beside = {};
   for (std::uint32_t step = 0; step < kMaxClimb && pace.go_on(); ++step) {
     const Around at = around(frame, witness);
-    if (way.is_of(witness) && is_lowest(kernels, frame, scratch, pace, at, way.along)) return;
+    if (way.is_of(witness) && is_lowest(kernels, frame, pace, at, way.along)) return;
     for (std::uint32_t i = 0; i < kBatch; ++i) {
       scratch.batch_a[i] = at.pairs[i].a;
       scratch.batch_b[i] = at.pairs[i].b;

@@ -136,7 +136,7 @@ void measure_ways(const Kernels& kernels, const PairFrame& frame, SearchScratch&
 
 /// How far sixteen pairs are apart, in units, along a direction of length 1 in the coordinates of
 /// b's image: none is nearer. kSeparationUnits.
-void separate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+void separate(const Kernels& kernels, const PairFrame& frame, Pace& pace,
               const Witness (&pairs)[kBatch], Vec3f along, float (&out)[kBatch]) noexcept;
 inline constexpr std::uint64_t kSeparationUnits = 2;
 

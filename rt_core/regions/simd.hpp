@@ -80,6 +80,64 @@ PALPATE_LANES Floats magnitude(Floats v) noexcept {
 /// Towards zero; of what an int holds.
 PALPATE_LANES Ints truncated(Floats v) noexcept { return __builtin_convertvector(v, Ints); }
 
+/// Four floats from each of kLanes / 4 places. The functions below are about every four lanes by
+/// themselves.
+PALPATE_LANES Floats fours(const float* const (&from)[kLanes / 4]) noexcept;
+/// Of 0123 and 4567: 0415 and 2637.
+PALPATE_LANES Floats low_mixed(Floats a, Floats b) noexcept;
+PALPATE_LANES Floats high_mixed(Floats a, Floats b) noexcept;
+/// 0145 and 2367.
+PALPATE_LANES Floats low_halves(Floats a, Floats b) noexcept;
+PALPATE_LANES Floats high_halves(Floats a, Floats b) noexcept;
+
+#if defined(__AVX512F__)
+// Masked, with all lanes: without a mask the header of GCC 12 warns of itself.
+PALPATE_LANES Floats fours(const float* const (&from)[4]) noexcept {
+  __m512 v = _mm512_maskz_broadcast_f32x4(0xffff, four(from[0]));
+  v = _mm512_maskz_insertf32x4(0xffff, v, four(from[1]), 1);
+  v = _mm512_maskz_insertf32x4(0xffff, v, four(from[2]), 2);
+  return _mm512_maskz_insertf32x4(0xffff, v, four(from[3]), 3);
+}
+PALPATE_LANES Floats low_mixed(Floats a, Floats b) noexcept {
+  return _mm512_maskz_unpacklo_ps(0xffff, a, b);
+}
+PALPATE_LANES Floats high_mixed(Floats a, Floats b) noexcept {
+  return _mm512_maskz_unpackhi_ps(0xffff, a, b);
+}
+PALPATE_LANES Floats low_halves(Floats a, Floats b) noexcept {
+  return _mm512_maskz_shuffle_ps(0xffff, a, b, 0x44);
+}
+PALPATE_LANES Floats high_halves(Floats a, Floats b) noexcept {
+  return _mm512_maskz_shuffle_ps(0xffff, a, b, 0xee);
+}
+#elif defined(__AVX2__)
+PALPATE_LANES Floats fours(const float* const (&from)[2]) noexcept {
+  return __builtin_shufflevector(four(from[0]), four(from[1]), 0, 1, 2, 3, 4, 5, 6, 7);
+}
+PALPATE_LANES Floats low_mixed(Floats a, Floats b) noexcept { return _mm256_unpacklo_ps(a, b); }
+PALPATE_LANES Floats high_mixed(Floats a, Floats b) noexcept { return _mm256_unpackhi_ps(a, b); }
+PALPATE_LANES Floats low_halves(Floats a, Floats b) noexcept {
+  return _mm256_shuffle_ps(a, b, 0x44);
+}
+PALPATE_LANES Floats high_halves(Floats a, Floats b) noexcept {
+  return _mm256_shuffle_ps(a, b, 0xee);
+}
+#else
+PALPATE_LANES Floats fours(const float* const (&from)[1]) noexcept { return four(from[0]); }
+PALPATE_LANES Floats low_mixed(Floats a, Floats b) noexcept {
+  return __builtin_shufflevector(a, b, 0, 4, 1, 5);
+}
+PALPATE_LANES Floats high_mixed(Floats a, Floats b) noexcept {
+  return __builtin_shufflevector(a, b, 2, 6, 3, 7);
+}
+PALPATE_LANES Floats low_halves(Floats a, Floats b) noexcept {
+  return __builtin_shufflevector(a, b, 0, 1, 4, 5);
+}
+PALPATE_LANES Floats high_halves(Floats a, Floats b) noexcept {
+  return __builtin_shufflevector(a, b, 2, 3, 6, 7);
+}
+#endif
+
 /// 1 where the mask is set.
 PALPATE_LANES Ints ones(Ints mask) noexcept { return -mask; }
 

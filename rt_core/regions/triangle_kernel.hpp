@@ -254,15 +254,14 @@ PALPATE_LANES std::uint32_t distances(const image::RegionTriangle* const (&a)[kB
   constexpr bool kPoints = kAsked != Asked::nothing;
   constexpr float kShrunk2 = 1.0f / (kStretch * kStretch);
   Work& work = work_in(scratch);
-  TriangleLanes& lanes = scratch.lanes;
-  gather_corners(a, lanes.a);
-  gather_corners(b, lanes.b);
   std::uint32_t crossing = 0;
   for (int lane = 0; lane < static_cast<int>(kBatch); lane += kLanes) {
-    const Vectors origin = corner(lanes.b, 0, lane);
+    const CornerLanes of_a = corners_of(a + lane);
+    const CornerLanes of_b = corners_of(b + lane);
+    const Vectors origin = of_b.corner[0];
     for (int i = 0; i < 3; ++i) {
-      work.a.corner[i] = all(kStretch) * (mapped(corner(lanes.a, i, lane), a_to_b) - origin);
-      work.b.corner[i] = all(kStretch) * (corner(lanes.b, i, lane) - origin);
+      work.a.corner[i] = all(kStretch) * (mapped(of_a.corner[i], a_to_b) - origin);
+      work.b.corner[i] = all(kStretch) * (of_b.corner[i] - origin);
     }
     const Ints cross = closest<kPoints>(work);
     const Floats squared = work.best.squared * kShrunk2;
@@ -304,19 +303,18 @@ std::uint32_t triangle_courses(const image::RegionTriangle* const (&a)[kBatch],
 
 void separations(const image::RegionTriangle* const (&a)[kBatch],
                  const image::RegionTriangle* const (&b)[kBatch], const Transform& a_to_b,
-                 Vec3f along, KernelScratch& scratch, float (&out)[kBatch]) noexcept {
-  TriangleLanes& lanes = scratch.lanes;
-  gather_corners(a, lanes.a);
-  gather_corners(b, lanes.b);
+                 Vec3f along, float (&out)[kBatch]) noexcept {
   const Vectors n = {all(along.x), all(along.y), all(along.z)};
   for (int lane = 0; lane < static_cast<int>(kBatch); lane += kLanes) {
     // Near the pair: what lies far from its body's origin is no less exact.
-    const Vectors origin = corner(lanes.b, 0, lane);
+    const CornerLanes of_a = corners_of(a + lane);
+    const CornerLanes of_b = corners_of(b + lane);
+    const Vectors origin = of_b.corner[0];
     Floats least_a = all(std::numeric_limits<float>::max());
     Floats least_b = Floats{};  // of the way back: the origin is one of its corners
     for (int i = 0; i < 3; ++i) {
-      least_a = least(dot(n, mapped(corner(lanes.a, i, lane), a_to_b) - origin), least_a);
-      least_b = least(dot(n, origin - corner(lanes.b, i, lane)), least_b);
+      least_a = least(dot(n, mapped(of_a.corner[i], a_to_b) - origin), least_a);
+      least_b = least(dot(n, origin - of_b.corner[i]), least_b);
     }
     store(least_a + least_b, out + lane);
   }

@@ -198,8 +198,7 @@ TEST(RegionKernels, Separations_bound_distances_and_mostly_meet_them_along_their
     const Vec3d way{double(apart[0][lane]), double(apart[1][lane]), double(apart[2][lane])};
     if ((crossing >> lane & 1) != 0 || !(norm(way) > 1e-3 * size)) continue;
     const Vec3d along = (1 / norm(way)) * way;
-    kernels.separations(pairs.at_a, pairs.at_b, pairs.map, vec_cast<float>(along), *scratch,
-                        separations);
+    kernels.separations(pairs.at_a, pairs.at_b, pairs.map, vec_cast<float>(along), separations);
     for (std::uint32_t i = 0; i < kBatch; ++i) {
       ASSERT_NEAR(double(separations[i]), separation(pairs, i, along), 1e-6 * size);
       ASSERT_LE(double(separations[i]), std::sqrt(double(squared[i])) + 1e-6 * size);
@@ -529,7 +528,7 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
       float squared[kBatch];
       table.triangle_ways(pairs.at_a, pairs.at_b, pairs.map, *scratch, squared, ways);
       const Vec3f along{0.6f, -0.64f, 0.48f};
-      table.separations(pairs.at_a, pairs.at_b, pairs.map, along, *scratch, separations);
+      table.separations(pairs.at_a, pairs.at_b, pairs.map, along, separations);
       table.triangle_courses(pairs.at_a, pairs.at_b, pairs.map, along, *scratch, squared, least);
     };
     run_along(*tables()[0], way_first, separation_first, least_first);
