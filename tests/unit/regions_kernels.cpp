@@ -454,17 +454,23 @@ void put_corners(Vec3d a, Vec3d b, int c, std::uint32_t lane, TriangleLanes& out
   }
 }
 
+/// As those who ask for witnesses do.
+void put_all(const Pairs& pairs, TriangleLanes& out) {
+  for (std::uint32_t i = 0; i < kBatch; ++i) {
+    const Vec3d origin = corner(pairs.b[i], 0);
+    for (int c = 0; c < 3; ++c) {
+      put_corners(mapped(pairs.map, corner(pairs.a[i], c)) - origin, corner(pairs.b[i], c) - origin,
+                  c, i, out);
+    }
+  }
+}
+
 TEST(RegionKernels, Witnesses_are_as_far_apart_as_the_triangles) {
   Random random(4);
   const auto scratch = std::make_unique<KernelScratch>();
   for (int round = 0; round < 1000; ++round) {
-    Pairs pairs = random_pairs(random);
-    for (std::uint32_t i = 0; i < kBatch; ++i) {
-      for (int c = 0; c < 3; ++c) {
-        put_corners(mapped(pairs.map, corner(pairs.a[i], c)) - corner(pairs.b[i], 0),
-                    corner(pairs.b[i], c) - corner(pairs.b[i], 0), c, i, scratch->lanes);
-      }
-    }
+    const Pairs pairs = random_pairs(random);
+    put_all(pairs, scratch->lanes);
     WitnessLanes found;
     best_kernels().witnesses(*scratch, found);
     for (std::uint32_t i = 0; i < kBatch; ++i) {
@@ -507,11 +513,17 @@ TEST(RegionKernels, Witnesses_above_the_middle_of_a_needle_are_right_to_a_millio
 }
 
 TEST(RegionKernels, Tables_give_the_same_bits) {
+  // About the pairs; some are outside, and some edges are long.
+  constexpr image::ProximityGrid kGrid{{-0.2f, -0.3f, -0.25f}, 0.013f, {9, 7, 11}, 0};
+  constexpr std::uint32_t kNumbers[kBatch] = {0, 1, 2,  3,  4,          5,          6,          7,
+                                              8, 9, 99, 77, 0xffffffff, 0x80000000, 0x12345678, 1};
+  constexpr float long2 = 0.01f;
   Random random(2);
   const auto scratch = std::make_unique<KernelScratch>();
   for (int round = 0; round < 500; ++round) {
     const Pairs pairs = random_pairs(random);
     const Boxes boxes = random_boxes(random);
+    put_all(pairs, scratch->lanes);
     float first[kBatch], other[kBatch], way_first[3][kBatch], way_other[3][kBatch];
     float separation_first[kBatch], separation_other[kBatch];
     float least_first[kBatch], least_other[kBatch];
@@ -519,7 +531,7 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
     const auto run = [&](const Kernels& table, float(&squared)[kBatch], WitnessLanes& found) {
       const std::uint32_t crossing =
           table.triangle_distances(pairs.at_a, pairs.at_b, pairs.map, *scratch, squared);
-      table.witnesses(*scratch, found);  // of the lanes that the call above has left
+      table.witnesses(*scratch, found);
       return crossing;
     };
     const std::uint32_t crossing = run(*tables()[0], first, found_first);
@@ -543,6 +555,14 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
       ASSERT_EQ(std::memcmp(found_first.apart, found_other.apart, sizeof found_first.apart), 0);
       ASSERT_EQ(std::memcmp(found_first.on_a, found_other.on_a, sizeof found_first.on_a), 0);
       ASSERT_EQ(found_first.crossing, found_other.crossing);
+    }
+    BrickLanes bricks_first, bricks_other;
+    for (const Kernels* table : tables()) {
+      const bool is_first = table == tables()[0];
+      table->find_bricks(pairs.at_a, kNumbers, long2, pairs.map, kGrid,
+                         is_first ? bricks_first : bricks_other);
+      if (is_first) bricks_other = bricks_first;
+      ASSERT_EQ(std::memcmp(&bricks_first, &bricks_other, sizeof bricks_first), 0) << table->name;
     }
     const Vec3f course{0.1f, -0.02f, 0.05f};
     for (const Order order : {Order::any, Order::by_distance}) {

@@ -66,6 +66,25 @@ TEST(RegionLook, What_is_found_is_a_cell_away_at_most) {
   }
 }
 
+TEST(RegionLook, What_a_look_finds_is_named_at_the_triangles_centre) {
+  const ImageView& view = ball().view;
+  regions::PairFrame frame = coincident(view);
+  const float turned[9] = {0.36f, 0.48f, -0.8f, -0.8f, 0.6f, 0, 0.48f, 0.64f, 0.6f};
+  std::copy_n(turned, 9, frame.a_to_b.rotation);
+  frame.a_to_b.translation[1] = 0.3f;
+  for (std::uint32_t region = 0; region < view.regions.size(); ++region) {
+    regions::Looks looks;
+    regions::look_over(frame, region, 0, 1 + region % regions::kMostLooks, looks);
+    regions::look_from(kernels(), frame, looks);
+    for (std::uint32_t i = 0; i < looks.count; ++i) {
+      const image::RegionTriangle& t = view.region_triangles[looks.a[i]];
+      ASSERT_FALSE(regions::is_long(t, view.proximity_grid->cell));
+      const Vec3f place = regions::at_place(frame.a_to_b, regions::centre_of(t));
+      EXPECT_EQ(looks.b[i], regions::near_place(frame, place)) << region << ", " << i;
+    }
+  }
+}
+
 TEST(RegionLook, Looks_in_a_row_are_of_different_triangles) {
   const ImageView& view = ball().view;
   const regions::PairFrame frame = coincident(view);
