@@ -84,6 +84,7 @@ struct Kernels {
   ///                node's coordinates; the room that it sweeps is bounded on the same axes
   /// @param unit2  squares of lengths in the node's image times this are in the unit of the bounds
   /// @param below  squared, in the unit of the bounds; nearer boxes are near
+  /// @param order  by_distance: out.place of those that are near is set, else it stays as it was
   /// @return bit i set where child i is near
   std::uint32_t (*test_boxes)(const Box& box, const Transform& to_node, Vec3f course,
                               const image::RegionNode& node, float unit2, float below, Order order,
@@ -127,9 +128,11 @@ struct Kernels {
 
   /// The cells of a grid in which the centres of kBatch triangles lie; of a triangle with an edge
   /// longer than the root of long2, some other place of it, which its number tells: places of
-  /// numbers in a row are spread over it. What lies outside of the grid is in the outermost cells.
+  /// numbers in a row are spread over it (Roberts 2018). What lies outside of the grid is in the
+  /// outermost cells. Rounding may take what lies between two cells for the other's.
+  /// @param numbers  any
   /// @param long2    in the coordinates of the triangles' image
-  /// @param to_grid  from these to the grid's
+  /// @param to_grid  from these to the grid's, those of the other body's image
   void (*find_bricks)(const image::RegionTriangle* const (&from)[kBatch],
                       const std::uint32_t (&numbers)[kBatch], float long2, const Transform& to_grid,
                       const image::ProximityGrid& grid, BrickLanes& out) noexcept;

@@ -52,6 +52,7 @@ void find_bricks(const Kernels& kernels, const PairFrame& frame, Looks& looks) n
   BrickLanes found;
   kernels.find_bricks(from, looks.number, longest2(grid.cell * frame.b_to_a.scale), frame.a_to_b,
                       grid, found);
+  static_assert(image::kBrickCells <= 256);
   for (std::uint32_t i = 0; i < looks.count; ++i) {
     looks.in_brick[i] = static_cast<std::uint8_t>(found.in_brick[i]);
     looks.at[i] = &frame.b->proximity_bricks[static_cast<std::uint32_t>(found.brick[i])];
