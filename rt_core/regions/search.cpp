@@ -547,6 +547,20 @@ void separate(const Kernels& kernels, const PairFrame& frame, Pace& pace,
   for (float& apart : out) apart *= scale_b;
 }
 
+void bound(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+           const std::uint32_t (&a)[kBatch], const std::uint32_t (&b)[kBatch],
+           float (&out)[kBatch]) noexcept {
+  const RegionTriangle* of_a[kBatch];
+  const RegionTriangle* of_b[kBatch];
+  for (std::uint32_t i = 0; i < kBatch; ++i) {
+    of_a[i] = &frame.a->region_triangles[a[i]];
+    of_b[i] = &frame.b->region_triangles[b[i]];
+  }
+  pace.charge(kBoundUnits);
+  kernels.triangle_bounds(of_a, of_b, frame.a_to_b, scratch.kernel, out);
+  for (float& squared : out) squared = sqrt_of(frame.scale2_b * squared);
+}
+
 void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
            Witness& witness, Way way, Beside* out_beside) noexcept {
   if (out_beside != nullptr) *out_beside = {};

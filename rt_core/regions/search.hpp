@@ -39,6 +39,13 @@ struct Candidate {
 inline constexpr std::uint32_t kMaxCandidates =
     2 * image::kMaxRegionDepth * image::kRegionWidth + 1;
 
+/// A pair of triangles that an active region's look has met, before it is measured.
+struct Sight {
+  std::uint32_t of = 0;  ///< which active region
+  Witness pair;          ///< no nearer than its distance
+};
+inline constexpr std::uint32_t kSights = kBatch * kBatch;
+
 /// Working memory of one search at a time; needs no initialisation.
 struct SearchScratch {
   KernelScratch kernel;
@@ -48,6 +55,7 @@ struct SearchScratch {
   std::uint32_t batch_b[kBatch];
   float batch_squared[kBatch];
   std::uint32_t batch_of[kBatch];  ///< the callers': which active region each is of
+  Sight sights[kSights];           ///< likewise
 };
 
 /// What a search that was ended early has not looked at, and what it knows of the rest: each pair
@@ -139,6 +147,13 @@ void measure_ways(const Kernels& kernels, const PairFrame& frame, SearchScratch&
 void separate(const Kernels& kernels, const PairFrame& frame, Pace& pace,
               const Witness (&pairs)[kBatch], Vec3f along, float (&out)[kBatch]) noexcept;
 inline constexpr std::uint64_t kSeparationUnits = 2;
+
+/// How near sixteen pairs may be, in units: none is nearer than that, and hardly any of triangles
+/// that face each other is much farther. kBoundUnits.
+void bound(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
+           const std::uint32_t (&a)[kBatch], const std::uint32_t (&b)[kBatch],
+           float (&out)[kBatch]) noexcept;
+inline constexpr std::uint64_t kBoundUnits = 2;
 
 /// Pairs that are nearer by less than this are as near: what triangles that share the witness's
 /// corner seem to be nearer by rounding.

@@ -14,14 +14,16 @@ constexpr double kTelling = 64;
 constexpr double kFewestUnits = 64;
 constexpr double kFewestLooks = 4;
 /// More see little that is new in a region; a climb from the nearest does more.
-constexpr double kMostSpread = 14;
+constexpr double kMostSpread = 16;
 static_assert(kMostSpread <= kMostLooks);
 /// Beside the nearest, of each that is spread over a region.
-constexpr double kBeside = 0.75;
+constexpr double kBeside = 0.5;
 /// Together they wait for memory less than where they are alone, and so many count as a unit. A
 /// survey is planned as if they were alone: rounds that are begun are ended.
 constexpr std::uint32_t kTogetherPerUnit = 6;
-constexpr double kUnitsPerLook = 1.0 / kLooksPerUnit + static_cast<double>(kBatchUnits) / kBatch;
+constexpr double kMeasured = 0.15;  // of looks; the others cannot be nearer
+constexpr double kUnitsPerLook =
+    1.0 / kLooksPerUnit + (kBoundUnits + kMeasured * kBatchUnits) / kBatch;
 constexpr std::uint32_t kRegionsPerRound = 16;
 constexpr std::uint32_t kMostRounds = 64;
 /// So many rounds are repeated, each with other places, before the next ones begin: a force is told
@@ -205,17 +207,23 @@ class Survey {
     const std::uint32_t first = looks_ / 2;
     const std::uint32_t rest = looks_ - first;
     spread_ = true;
-    const auto look = [&](const Active& item, Looks& out) { look_on(work_, item, first, out); };
-    see_each(round, first, look);
+    const auto look_once = [&](const Active& item, Looks& out) {
+      look_on(work_, item, first, out);
+    };
     // Half of them tell where there is something to find.
-    see_each(round, rest, [&](const Active& item, Looks& out) {
+    const auto look_again = [&](const Active& item, Looks& out) {
       if (work_.may_climb(item)) look_on(work_, item, rest, out);
-    });
-    spread_ = false;
-    see_each(round, beside_, [&](const Active& item, Looks& out) {
+    };
+    const auto beside_nearest = [&](const Active& item, Looks& out) {
       if (!work_.is_felt(item)) return;
       look_beside(work_.frame_of(item), item.region, work_.witness_of(item).a, beside_, out);
-    });
+    };
+    see_each(round, first, look_once, true);
+    see_each(round, rest, look_again, false);
+    batch_.measure_all();
+    spread_ = false;
+    see_each(round, beside_, beside_nearest, false);
+    batch_.measure_all();
   }
 
   /// Looks of regions of one pair of bodies, all in the same step.
@@ -225,15 +233,33 @@ class Survey {
     const PairFrame* frame = nullptr;
   };
 
-  /// Looks from the places that are chosen in every region of a round, and measures the pairs.
-  /// Memory is slow: while one party's looks are measured, those of the next ones are on their way;
-  /// and a few looks at a time would wait for it as long as many.
+  /// Looks from the places that are chosen in every region of a round, and measures what they meet,
+  /// but for the last pairs.
   /// @param most    looks of a region, at most kMostLooks
   /// @param choose  called as choose(item, looks), to which it adds
-  void see_each(std::uint32_t round, std::uint32_t most, auto choose) noexcept {
-    const std::span<const std::uint32_t> regions = regions_of(round);
+  /// @param unseen  regions that may have no witness yet
+  void see_each(std::uint32_t round, std::uint32_t most, auto choose, bool unseen) noexcept {
+    std::span<const std::uint32_t> left = regions_of(round);
+    while (!left.empty()) {
+      const std::size_t count = left.size() < kBatch ? left.size() : kBatch;
+      const std::span<Sight> sights = look(left.first(count), most, choose);
+      if (unseen) measure_nearest(sights);
+      measure_rest(sights);
+      if (!work_.pace.go_on()) return;
+      left = left.subspan(count);
+    }
+  }
+
+  /// Memory is slow: while one party's pairs are bounded, the looks of the next ones are on their
+  /// way; and a few looks at a time would wait for it as long as many.
+  /// @param regions  at most kBatch
+  /// @return what they have met that may be nearer than what is known, region by region
+  std::span<Sight> look(std::span<const std::uint32_t> regions, std::uint32_t most,
+                        auto choose) noexcept {
+    static_assert(kMostLooks * kBatch <= kSights);
     Party on_their_way[kLookSteps];
     std::size_t sent = 0;
+    std::uint32_t met = 0;
     for (std::uint32_t k = 0, left = kLookSteps; left > 0; ++k) {
       sent = send(regions, sent, most, choose, on_their_way[k % kLookSteps]);
       for (std::uint32_t step = 0; step < kLookSteps && step <= k; ++step) {
@@ -244,9 +270,9 @@ class Survey {
       if (sent == regions.size()) --left;
       if (k + 1 < kLookSteps) continue;
       if (!work_.pace.go_on()) break;
-      measure_all_of(on_their_way[(k + 1) % kLookSteps]);
+      met = note_sights(on_their_way[(k + 1) % kLookSteps], met);
     }
-    batch_.measure_all();
+    return std::span(work_.memory.search->sights).first(met);
   }
 
   /// @param party  gets looks of as many regions as there is room for; none where all are sent
@@ -266,11 +292,52 @@ class Survey {
     return next;
   }
 
-  void measure_all_of(const Party& party) noexcept {
-    work_.pace.charge((party.looks.count + kTogetherPerUnit / 2) / kTogetherPerUnit);
-    for (std::uint32_t i = 0; i < party.looks.count; ++i) {
-      batch_.add(party.of[i], party.looks.pair(i));
+  /// @param met  so many are noted before
+  /// @return and so many with these
+  std::uint32_t note_sights(Party& party, std::uint32_t met) noexcept {
+    Looks& looks = party.looks;
+    if (looks.count == 0) return met;
+    work_.pace.charge((looks.count + kTogetherPerUnit / 2) / kTogetherPerUnit);
+    for (std::uint32_t i = looks.count; i < kBatch; ++i) {
+      looks.a[i] = looks.a[0];
+      looks.b[i] = looks.b[0];
     }
+    float least[kBatch];
+    bound(*work_.memory.kernels, *party.frame, *work_.memory.search, work_.pace, looks.a, looks.b,
+          least);
+    for (std::uint32_t i = 0; i < looks.count; ++i) {
+      const Sight sight{party.of[i], {looks.a[i], looks.b[i], least[i]}};
+      if (may_be_nearer(sight)) work_.memory.search->sights[met++] = sight;
+    }
+    return met;
+  }
+
+  /// Of each region what seems to be the nearest: few of the others can be nearer than that.
+  void measure_nearest(std::span<Sight> sights) noexcept {
+    std::size_t end = 0;
+    for (std::size_t first = 0; first < sights.size(); first = end) {
+      std::size_t nearest = first;
+      for (end = first; end < sights.size() && sights[end].of == sights[first].of; ++end) {
+        if (sights[end].pair.distance < sights[nearest].pair.distance) nearest = end;
+      }
+      measure_once(sights[nearest]);
+    }
+    batch_.measure_all();
+  }
+  void measure_rest(std::span<Sight> sights) noexcept {
+    for (Sight& sight : sights) {
+      if (may_be_nearer(sight) && !work_.pace.go_on()) return;
+      measure_once(sight);
+    }
+  }
+  bool may_be_nearer(const Sight& sight) const noexcept {
+    const Witness& known = work_.witness_of(work_.active()[sight.of]);
+    return !known.known() || sight.pair.distance < known.distance;
+  }
+  void measure_once(Sight& sight) noexcept {
+    if (!may_be_nearer(sight)) return;
+    batch_.add(sight.of, sight.pair);
+    sight.pair.distance = kFarthest;
   }
 
   void take(std::uint32_t index, const Witness& pair) noexcept {

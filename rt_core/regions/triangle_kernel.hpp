@@ -22,6 +22,7 @@ inline constexpr float kParallel = 1e-12f;
 /// Coordinates relative to the pair are stretched by this power of two, so that products of tiny
 /// triangles' areas stay in the range of float.
 inline constexpr float kStretch = 1024.0f;
+inline constexpr float kShrunk2 = 1.0f / (kStretch * kStretch);
 
 struct Triangles {
   Vectors corner[3];
@@ -219,6 +220,19 @@ PALPATE_LANES Vectors mapped(Vectors p, const Transform& map) noexcept {
           r[6] * s.x + r[7] * s.y + r[8] * s.z + map.translation[2]};
 }
 
+/// Corners of as many pairs as there are lanes, stretched, near the pairs.
+PALPATE_LANES void bring_together(const image::RegionTriangle* const* a,
+                                  const image::RegionTriangle* const* b, const Transform& a_to_b,
+                                  Work& out) noexcept {
+  const CornerLanes of_a = corners_of(a);
+  const CornerLanes of_b = corners_of(b);
+  const Vectors origin = of_b.corner[0];
+  for (int i = 0; i < 3; ++i) {
+    out.a.corner[i] = all(kStretch) * (mapped(of_a.corner[i], a_to_b) - origin);
+    out.b.corner[i] = all(kStretch) * (of_b.corner[i] - origin);
+  }
+}
+
 PALPATE_LANES void store_vectors(Vectors v, float (&out)[3][kBatch], int lane) noexcept {
   store(v.x, out[0] + lane);
   store(v.y, out[1] + lane);
@@ -252,17 +266,10 @@ PALPATE_LANES std::uint32_t distances(const image::RegionTriangle* const (&a)[kB
                                       float (&out_squared)[kBatch], float (*out_apart)[3][kBatch],
                                       Vec3f course, float (*out_least)[kBatch]) noexcept {
   constexpr bool kPoints = kAsked != Asked::nothing;
-  constexpr float kShrunk2 = 1.0f / (kStretch * kStretch);
   Work& work = work_in(scratch);
   std::uint32_t crossing = 0;
   for (int lane = 0; lane < static_cast<int>(kBatch); lane += kLanes) {
-    const CornerLanes of_a = corners_of(a + lane);
-    const CornerLanes of_b = corners_of(b + lane);
-    const Vectors origin = of_b.corner[0];
-    for (int i = 0; i < 3; ++i) {
-      work.a.corner[i] = all(kStretch) * (mapped(of_a.corner[i], a_to_b) - origin);
-      work.b.corner[i] = all(kStretch) * (of_b.corner[i] - origin);
-    }
+    bring_together(a + lane, b + lane, a_to_b, work);
     const Ints cross = closest<kPoints>(work);
     const Floats squared = work.best.squared * kShrunk2;
     store(cross ? Floats{} : squared, out_squared + lane);
@@ -317,6 +324,39 @@ void separations(const image::RegionTriangle* const (&a)[kBatch],
       least_b = least(dot(n, origin - of_b.corner[i]), least_b);
     }
     store(least_a + least_b, out + lane);
+  }
+}
+
+/// Squared, how far two triangles are apart along the first one's normal. What a needle's normal
+/// lacks in accuracy costs nothing: both are projected.
+PALPATE_LANES Floats apart_along_normal(const Triangles& of, const Triangles& other) noexcept {
+  const Vectors to_next = of.corner[1] - of.corner[0];
+  const Vectors to_last = of.corner[2] - of.corner[0];
+  const Vectors n = cross(to_next, to_last);
+  const Floats next = dot(n, to_next);
+  const Floats last = dot(n, to_last);
+  Floats low = dot(n, other.corner[0] - of.corner[0]);
+  Floats high = low;
+  for (int i = 1; i < 3; ++i) {
+    const Floats at = dot(n, other.corner[i] - of.corner[0]);
+    low = least(at, low);
+    high = most(at, high);
+  }
+  const Floats beyond = low - most(most(next, last), Floats{});
+  const Floats before = least(least(next, last), Floats{}) - high;
+  const Floats gap = most(most(beyond, before), Floats{});
+  return gap * (gap * inverse(dot(n, n)));
+}
+
+void triangle_bounds(const image::RegionTriangle* const (&a)[kBatch],
+                     const image::RegionTriangle* const (&b)[kBatch], const Transform& a_to_b,
+                     KernelScratch& scratch, float (&out_squared)[kBatch]) noexcept {
+  Work& work = work_in(scratch);
+  for (int lane = 0; lane < static_cast<int>(kBatch); lane += kLanes) {
+    bring_together(a + lane, b + lane, a_to_b, work);
+    const Floats along_b = apart_along_normal(work.b, work.a);
+    const Floats along_a = apart_along_normal(work.a, work.b);
+    store(kShrunk2 * most(along_a, along_b), out_squared + lane);
   }
 }
 

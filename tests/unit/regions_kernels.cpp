@@ -54,6 +54,12 @@ Vec3d mapped(const Transform& m, Vec3d p) {
           dot(row(2), s) + double(m.translation[2])};
 }
 
+void put(Vec3d p, int corner, image::RegionTriangle& out) {
+  out.corners[3 * corner] = static_cast<float>(p.x);
+  out.corners[3 * corner + 1] = static_cast<float>(p.y);
+  out.corners[3 * corner + 2] = static_cast<float>(p.z);
+}
+
 /// Triangles of all kinds: fat ones, needles, caps, segments and points.
 image::RegionTriangle random_triangle(Random& random, double size) {
   Vec3d p[3] = {in_cube(random, 0.5), {}, {}};
@@ -79,11 +85,7 @@ image::RegionTriangle random_triangle(Random& random, double size) {
       break;
   }
   image::RegionTriangle t{};
-  for (int i = 0; i < 3; ++i) {
-    t.corners[3 * i] = static_cast<float>(p[i].x);
-    t.corners[3 * i + 1] = static_cast<float>(p[i].y);
-    t.corners[3 * i + 2] = static_cast<float>(p[i].z);
-  }
+  for (int i = 0; i < 3; ++i) put(p[i], i, t);
   return t;
 }
 
@@ -209,6 +211,59 @@ TEST(RegionKernels, Separations_bound_distances_and_mostly_meet_them_along_their
   }
   EXPECT_GT(asked, 300);
   EXPECT_GT(met, 0.95 * asked);
+}
+
+TEST(RegionKernels, TriangleBounds_are_no_farther_than_triangles_of_all_kinds) {
+  Random random(11);
+  const auto scratch = std::make_unique<KernelScratch>();
+  int apart = 0, told = 0;
+  for (int round = 0; round < 4000; ++round) {
+    const Pairs pairs = random_pairs(random);
+    const Kernels& kernels = best_kernels();
+    const double size = 1 + 10 * double(pairs.map.scale);
+    float squared[kBatch], least[kBatch];
+    kernels.triangle_distances(pairs.at_a, pairs.at_b, pairs.map, *scratch, squared);
+    kernels.triangle_bounds(pairs.at_a, pairs.at_b, pairs.map, *scratch, least);
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      const double distance = std::sqrt(double(squared[i]));
+      ASSERT_GE(least[i], 0.0f);
+      ASSERT_LE(std::sqrt(double(least[i])), distance + 1e-6 * size) << round << " " << i;
+      apart += distance > 0 ? 1 : 0;
+      told += least[i] > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(told, apart / 2);
+}
+
+TEST(RegionKernels, TriangleBounds_of_triangles_above_each_other_are_their_distances) {
+  Random random(12);
+  const auto scratch = std::make_unique<KernelScratch>();
+  for (int round = 0; round < 500; ++round) {
+    const double height = std::pow(10.0, uniform(random, -4.0, 0.0));
+    // On either side of the larger one's face, in bodies of different scales and turned.
+    const double scale = std::pow(10.0, uniform(random, -2.0, 2.0));
+    const Mat3d turned = random_rotation(random);
+    const double side = round % 2 == 0 ? height : -height;
+    const Vec3d above[3] = {{0.1, 0.1, side}, {0.3, 0.15, 3 * side}, {0.2, 0.3, 2 * side}};
+    const Vec3d below[3] = {{-1, -1, 0}, {2, -1, 0}, {-1, 2, 0}};
+    Pairs pairs;
+    pairs.map = in_float(turned, {}, scale);
+    for (std::uint32_t i = 0; i < kBatch; ++i) {
+      for (int c = 0; c < 3; ++c) {
+        const Vec3d on_a = (1 / scale) * above[c];
+        const Vec3d on_b = turned * below[c];
+        put(on_a, c, pairs.a[i]);
+        put(on_b, c, pairs.b[i]);
+      }
+      pairs.at_a[i] = &pairs.a[i];
+      pairs.at_b[i] = &pairs.b[i];
+    }
+    float least[kBatch];
+    best_kernels().triangle_bounds(pairs.at_a, pairs.at_b, pairs.map, *scratch, least);
+    for (const float squared : least) {
+      ASSERT_NEAR(std::sqrt(double(squared)), height, 2e-6) << round;
+    }
+  }
 }
 
 TEST(RegionKernels, TriangleCourses_bound_distances_all_along_and_are_those_where_nothing_moves) {
@@ -527,6 +582,7 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
     float first[kBatch], other[kBatch], way_first[3][kBatch], way_other[3][kBatch];
     float separation_first[kBatch], separation_other[kBatch];
     float least_first[kBatch], least_other[kBatch];
+    float bounds_first[kBatch], bounds_other[kBatch];
     WitnessLanes found_first, found_other;
     const auto run = [&](const Kernels& table, float(&squared)[kBatch], WitnessLanes& found) {
       const std::uint32_t crossing =
@@ -555,6 +611,11 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
       ASSERT_EQ(std::memcmp(found_first.apart, found_other.apart, sizeof found_first.apart), 0);
       ASSERT_EQ(std::memcmp(found_first.on_a, found_other.on_a, sizeof found_first.on_a), 0);
       ASSERT_EQ(found_first.crossing, found_other.crossing);
+    }
+    tables()[0]->triangle_bounds(pairs.at_a, pairs.at_b, pairs.map, *scratch, bounds_first);
+    for (const Kernels* table : tables()) {
+      table->triangle_bounds(pairs.at_a, pairs.at_b, pairs.map, *scratch, bounds_other);
+      ASSERT_EQ(std::memcmp(bounds_first, bounds_other, sizeof bounds_first), 0) << table->name;
     }
     BrickLanes bricks_first, bricks_other;
     for (const Kernels* table : tables()) {

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a survey measures and what it passes over.
+#include "rt_core/regions/survey.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "rt_core/regions/look.hpp"
+#include "tests/support/baked_scene.hpp"
+#include "tests/support/shapes.hpp"
+
+namespace palpate::test {
+namespace {
+
+const BakedBody& ball() {
+  static const BakedBody body(bumpy_ball(40, 60, 1), bake::ForEngine::regions);
+  return body;
+}
+
+constexpr std::uint64_t kPlenty = 100000;
+
+/// Two balls so far from centre to centre, the first one of another size; nothing is known.
+struct TwoBalls {
+  explicit TwoBalls(double between, double size = 1) {
+    const ImageView& view = ball().view;
+    const std::size_t count = view.regions.size();
+    states.resize(count);
+    kept.resize(count);
+    witnesses.resize(count);
+    queue.resize(count);
+    turns.resize(count);
+    absence.assign(count, 0);
+    pair.image_a = pair.image_b = &view;
+    pair.scale_a = size;
+    pair.delta = 0.3;
+    pair.rotation_a = pair.b_in_a.rotation = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    pair.b_in_a.translation = {between, 0, 0};
+    frame = regions::frame_of(pair);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      active.push_back({.width = 0.3f, .way = {}, .state = i, .region = i, .pair = 0});
+    }
+    memory.kernels = &regions::best_kernels();
+    memory.search = scratch.get();
+    memory.pairs = {&pair, 1};
+    memory.frames = {&frame, 1};
+    memory.states = states;
+    memory.kept = kept;
+    memory.witnesses = witnesses;
+    memory.active = active;
+    memory.queue = queue;
+    memory.turns = turns;
+    memory.crowd.absence = absence;
+  }
+
+  /// @return work units
+  std::uint64_t survey(std::uint64_t units) {
+    Meter meter({.units = units}, {});
+    regions::Work work(memory, {.limited = true}, meter);
+    work.count = static_cast<std::uint32_t>(active.size());
+    work.anew = work.swept = true;
+    seen = regions::survey(work, 1);
+    return work.pace.used();
+  }
+
+  /// Of all that a region has looked at spread over it, all of it measured.
+  regions::Witness nearest_of_looks(std::uint32_t region) {
+    Meter meter({}, {});
+    regions::Pace pace(meter);
+    regions::Witness nearest;
+    for (std::uint32_t look = 0; look < kept[region].seeds.dives; ++look) {
+      regions::Looks looks;
+      regions::look_over(frame, region, look, 1, looks);
+      regions::look_from(*memory.kernels, frame, looks);
+      scratch->batch_a[0] = looks.a[0];
+      scratch->batch_b[0] = looks.b[0];
+      float distances[regions::kBatch];
+      regions::measure(*memory.kernels, frame, *scratch, pace, 1, distances);
+      if (!nearest.nearer_than(distances[0])) nearest = {looks.a[0], looks.b[0], distances[0]};
+    }
+    return nearest;
+  }
+
+  std::vector<regions::RegionState> states;
+  std::vector<regions::RegionPairs> kept;
+  std::vector<regions::Witness> witnesses;
+  std::vector<regions::Active> active;
+  std::vector<std::uint32_t> queue;
+  std::vector<std::uint64_t> turns;
+  std::vector<float> absence;
+  std::unique_ptr<regions::SearchScratch> scratch = std::make_unique<regions::SearchScratch>();
+  levels::PairState pair;
+  regions::PairFrame frame;
+  regions::QueryMemory memory;
+  bool seen = false;
+};
+
+TEST(RegionsSurvey, what_it_does_not_measure_is_not_nearer) {
+  for (const double between : {1.9, 2.05, 2.3}) {
+    TwoBalls s(between);
+    static_cast<void>(s.survey(kPlenty));
+    ASSERT_TRUE(s.seen);
+    for (std::uint32_t region = 0; region < s.active.size(); ++region) {
+      ASSERT_GT(s.kept[region].seeds.dives, 0u);
+      ASSERT_TRUE(s.witnesses[region].known());
+      EXPECT_LE(s.witnesses[region].distance, s.nearest_of_looks(region).distance) << region;
+    }
+  }
+}
+
+/// One in the other, so that faces lie above faces. But for those beside the nearest, each look
+/// would take half a unit more if what it meets were measured.
+TEST(RegionsSurvey, little_of_what_looks_meet_is_measured) {
+  TwoBalls s(0, 0.95);
+  const auto used = static_cast<double>(s.survey(kPlenty));
+  double spread = 0;
+  for (const regions::RegionPairs& of_region : s.kept) spread += of_region.seeds.dives;
+  constexpr double kEach = static_cast<double>(regions::kBatchUnits) / regions::kBatch;
+  EXPECT_LT(used, spread * (1.0 / regions::kLooksPerUnit + kEach));
+}
+
+TEST(RegionsSurvey, ends_soon_after_its_units_do) {
+  for (const std::uint64_t units : {64u, 200u, 500u}) {
+    TwoBalls s(2.05);
+    EXPECT_LE(s.survey(units), units + 2 * regions::kBatchUnits) << units;
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test
