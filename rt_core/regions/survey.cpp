@@ -67,6 +67,7 @@ class Survey {
     sort_by_round();
     const std::uint32_t before = work_.anew ? 0 : rounds_seen();
     const std::uint32_t seen = work_.anew ? begin() : go_on(before, rounds_);
+    batch_.measure_all();
     if (seen == before) return false;
     if (work_.anew && !work_.swept) forget_unseen(seen);
     work_.memory.pursuit.surveyed = static_cast<double>(seen) / rounds_;
@@ -204,13 +205,12 @@ class Survey {
   }
 
   void see(std::uint32_t round) noexcept {
-    const std::uint32_t first = looks_ / 2;
+    const std::uint32_t first = looks_ / 4;
     const std::uint32_t rest = looks_ - first;
-    spread_ = true;
     const auto look_once = [&](const Active& item, Looks& out) {
       look_on(work_, item, first, out);
     };
-    // Half of them tell where there is something to find.
+    // A quarter of them tells where there is something to find.
     const auto look_again = [&](const Active& item, Looks& out) {
       if (work_.may_climb(item)) look_on(work_, item, rest, out);
     };
@@ -221,9 +221,7 @@ class Survey {
     see_each(round, first, look_once, true);
     see_each(round, rest, look_again, false);
     batch_.measure_all();
-    spread_ = false;
     see_each(round, beside_, beside_nearest, false);
-    batch_.measure_all();
   }
 
   /// Looks of regions of one pair of bodies, all in the same step.
@@ -305,9 +303,12 @@ class Survey {
     float least[kBatch];
     bound(*work_.memory.kernels, *party.frame, *work_.memory.search, work_.pace, looks.a, looks.b,
           least);
+    std::uint32_t of = image::kNone;
+    float known = 0;
     for (std::uint32_t i = 0; i < looks.count; ++i) {
-      const Sight sight{party.of[i], {looks.a[i], looks.b[i], least[i]}};
-      if (may_be_nearer(sight)) work_.memory.search->sights[met++] = sight;
+      if (party.of[i] != of) known = known_of(of = party.of[i]);
+      if (!(least[i] < known)) continue;
+      work_.memory.search->sights[met++] = {of, {looks.a[i], looks.b[i], least[i]}};
     }
     return met;
   }
@@ -331,8 +332,12 @@ class Survey {
     }
   }
   bool may_be_nearer(const Sight& sight) const noexcept {
-    const Witness& known = work_.witness_of(work_.active()[sight.of]);
-    return !known.known() || sight.pair.distance < known.distance;
+    return sight.pair.distance < known_of(sight.of);
+  }
+  /// What an active region's looks have to be nearer than.
+  float known_of(std::uint32_t index) const noexcept {
+    const Witness& witness = work_.witness_of(work_.active()[index]);
+    return witness.known() ? witness.distance : kFarthest;
   }
   void measure_once(Sight& sight) noexcept {
     if (!may_be_nearer(sight)) return;
@@ -348,7 +353,7 @@ class Survey {
     const bool crossed = work_.is_crossing(item);
     witness = pair;
     // Every look as a seed would cost a fifth of the survey.
-    if (spread_) note_seed(*work_.frame_of(item).a, pair, work_.kept_of(item).seeds);
+    note_seed(*work_.frame_of(item).a, pair, work_.kept_of(item).seeds);
     // Contacts take time and units, too: no more are sought than can be told.
     const bool meets = !was_felt && work_.is_felt(item);
     const bool enters = !crossed && work_.is_crossing(item);
@@ -367,7 +372,6 @@ class Survey {
   std::uint32_t looks_ = 0;   // spread over a region
   std::uint32_t beside_ = 0;  // beside the nearest of them
   std::uint32_t rounds_ = 0;
-  bool spread_ = true;          // which kind is measured
   std::uint64_t felt_ = 0;      // of active regions
   std::uint64_t crossing_ = 0;  // likewise
 };

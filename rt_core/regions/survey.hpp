@@ -7,7 +7,7 @@
 namespace palpate::regions {
 
 /// Gives active regions that are open a witness by looks (look.hpp): the nearest of some spread
-/// over the region, half of them only where the others have met something within two delta, then
+/// over the region, most of them only where a quarter have met something within two delta, then
 /// of half as many beside that. What looks meet is bounded (Kernels::triangle_bounds), and measured
 /// only where it may be nearer than what the region has. Rounds of some sixteen regions each follow
 /// the order in which they are spread over the surface (image::Region::rank), so that whatever ends
