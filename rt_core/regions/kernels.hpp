@@ -123,9 +123,9 @@ struct Kernels {
                       Vec3f along, float (&out)[kBatch]) noexcept;
 
   /// Bounds from below, squared, of the distances of kBatch pairs, in the unit of b's image: how
-  /// far they are apart along either's normal, 0 where they overlap along both (separating axes).
-  /// Of triangles above each other that is the distance, at a third of what that takes. The root is
-  /// too large by at most 1e-6.
+  /// far they are apart along either's normal, 0 where they overlap along both (separating axes, as
+  /// in test_boxes, without those across two edges). Of triangles above each other that is the
+  /// distance, at a third of what that takes. The root is too large by at most 1e-6.
   void (*triangle_bounds)(const image::RegionTriangle* const (&a)[kBatch],
                           const image::RegionTriangle* const (&b)[kBatch], const Transform& a_to_b,
                           KernelScratch& scratch, float (&out_squared)[kBatch]) noexcept;

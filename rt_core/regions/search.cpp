@@ -31,10 +31,11 @@ float lessened_squared(float squared, float moved) noexcept {
 
 /// The pairs of a batch.
 struct Batch {
-  Batch(const PairFrame& frame, const SearchScratch& scratch) noexcept {
+  Batch(const PairFrame& frame, const std::uint32_t (&of_a)[kBatch],
+        const std::uint32_t (&of_b)[kBatch]) noexcept {
     for (std::uint32_t i = 0; i < kBatch; ++i) {
-      a[i] = &frame.a->region_triangles[scratch.batch_a[i]];
-      b[i] = &frame.b->region_triangles[scratch.batch_b[i]];
+      a[i] = &frame.a->region_triangles[of_a[i]];
+      b[i] = &frame.b->region_triangles[of_b[i]];
     }
   }
   const RegionTriangle* a[kBatch];
@@ -53,7 +54,7 @@ Vec3f course_of_b(const PairFrame& frame, Vec3f course) noexcept {
 /// Distances of sixteen pairs at once, in units.
 std::uint32_t evaluate(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
                        float (&out_squared)[kBatch]) noexcept {
-  const Batch pairs(frame, scratch);
+  const Batch pairs(frame, scratch.batch_a, scratch.batch_b);
   const std::uint32_t crossing =
       kernels.triangle_distances(pairs.a, pairs.b, frame.a_to_b, scratch.kernel, out_squared);
   for (float& squared : out_squared) squared *= frame.scale2_b;
@@ -266,7 +267,7 @@ class Search {
 
   /// The same as evaluate(), and along the course at least.
   void evaluate_along(float (&out_squared)[kBatch], float (&out_least)[kBatch]) noexcept {
-    const Batch pairs(frame_, scratch_);
+    const Batch pairs(frame_, scratch_.batch_a, scratch_.batch_b);
     kernels_.triangle_courses(pairs.a, pairs.b, frame_.a_to_b, reach_.course, scratch_.kernel,
                               out_squared, out_least);
     for (float& squared : out_squared) squared *= frame_.scale2_b;
@@ -520,7 +521,7 @@ void measure_ways(const Kernels& kernels, const PairFrame& frame, SearchScratch&
                   WayLanes& out_ways) noexcept {
   fill_up(scratch, count);
   pace.charge(kBatchUnits);
-  const Batch pairs(frame, scratch);
+  const Batch pairs(frame, scratch.batch_a, scratch.batch_b);
   kernels.triangle_ways(pairs.a, pairs.b, frame.a_to_b, scratch.kernel, out_distances,
                         out_ways.apart);
   for (float& d : out_distances) d = sqrt_of(frame.scale2_b * d);
@@ -550,14 +551,9 @@ void separate(const Kernels& kernels, const PairFrame& frame, Pace& pace,
 void bound(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
            const std::uint32_t (&a)[kBatch], const std::uint32_t (&b)[kBatch],
            float (&out)[kBatch]) noexcept {
-  const RegionTriangle* of_a[kBatch];
-  const RegionTriangle* of_b[kBatch];
-  for (std::uint32_t i = 0; i < kBatch; ++i) {
-    of_a[i] = &frame.a->region_triangles[a[i]];
-    of_b[i] = &frame.b->region_triangles[b[i]];
-  }
+  const Batch pairs(frame, a, b);
   pace.charge(kBoundUnits);
-  kernels.triangle_bounds(of_a, of_b, frame.a_to_b, scratch.kernel, out);
+  kernels.triangle_bounds(pairs.a, pairs.b, frame.a_to_b, scratch.kernel, out);
   for (float& squared : out) squared = sqrt_of(frame.scale2_b * squared);
 }
 

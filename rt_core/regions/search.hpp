@@ -44,7 +44,7 @@ struct Sight {
   std::uint32_t of = 0;  ///< which active region
   Witness pair;          ///< no nearer than its distance
 };
-inline constexpr std::uint32_t kSights = kBatch * kBatch;
+inline constexpr std::uint32_t kSights = kBatch * kBatch;  ///< of sixteen regions
 
 /// Working memory of one search at a time; needs no initialisation.
 struct SearchScratch {
@@ -149,7 +149,8 @@ void separate(const Kernels& kernels, const PairFrame& frame, Pace& pace,
 inline constexpr std::uint64_t kSeparationUnits = 2;
 
 /// How near sixteen pairs may be, in units: none is nearer than that, and hardly any of triangles
-/// that face each other is much farther. kBoundUnits.
+/// that face each other is much farther (Kernels::triangle_bounds). kBoundUnits.
+/// @param a, b  into the bodies' region_triangles
 void bound(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
            const std::uint32_t (&a)[kBatch], const std::uint32_t (&b)[kBatch],
            float (&out)[kBatch]) noexcept;
