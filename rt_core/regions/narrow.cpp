@@ -13,6 +13,7 @@
 #include "rt_core/regions/scout.hpp"
 #include "rt_core/regions/survey.hpp"
 #include "rt_core/regions/track.hpp"
+#include "rt_core/regions/watch.hpp"
 
 namespace palpate::regions {
 namespace {
@@ -84,7 +85,11 @@ class Narrowing {
         scout_where_none_is_felt();
         settle_suspected_sides(work_);
       }
-      if (work_.anew) search_or_survey();
+      if (work_.anew) {
+        search_or_survey();
+      } else if (!many_are_felt()) {
+        watch(work_);
+      }
     }
     begun_ = worth_taking_up();
     narrow_widest(work_.demand.limited && !lags_);
@@ -339,7 +344,8 @@ class Narrowing {
     return lags_;
   }
 
-  /// A quarter of those with a witness. Else a few decide the force, and searches find them.
+  /// A quarter of those with a witness. Else a few decide the force: searches find them, and what
+  /// comes is watched for.
   bool many_are_felt() noexcept {
     std::uint32_t known = 0;
     std::uint32_t felt = 0;

@@ -25,16 +25,18 @@ struct Yield {
 struct Pursuit {
   Yield search;
   Yield follow;
-  double search_units = 0;      ///< what a search takes, of late
-  std::uint32_t searches = 0;   ///< of which that is the mean, at most kMostSearches
-  bool lagged = false;          ///< searches did not keep up with the last tick
-  double surveyed = 1;          ///< which part of all regions has been, since the last jump
-  std::uint32_t round = 0;      ///< ticks in which witnesses were followed
-  std::uint32_t next_dive = 0;  ///< where the next one begins to dive
-  std::uint64_t unit_ns = 0;    ///< time of a work unit; 0: not known
-  std::uint64_t survey_ns = 0;  ///< the same of surveys: many looks in a row take less
-  double listing_units = 64;    ///< what the pairs that cross in a region take to list, of late;
-                                ///< first, what does for half of them
+  double search_units = 0;       ///< what a search takes, of late
+  std::uint32_t searches = 0;    ///< of which that is the mean, at most kMostSearches
+  bool lagged = false;           ///< searches did not keep up with the last tick
+  double surveyed = 1;           ///< which part of all regions has been, since the last jump
+  std::uint32_t round = 0;       ///< ticks in which witnesses were followed
+  std::uint32_t next_dive = 0;   ///< where the next one begins to dive
+  std::uint32_t next_look = 0;   ///< where the next watch (watch.hpp) begins to look ...
+  std::uint32_t next_climb = 0;  ///< ... and to climb
+  std::uint64_t unit_ns = 0;     ///< time of a work unit; 0: not known
+  std::uint64_t survey_ns = 0;   ///< the same of surveys: many looks in a row take less
+  double listing_units = 64;     ///< what the pairs that cross in a region take to list, of late;
+                                 ///< first, what does for half of them
 
   /// @param units     that it took to list the pairs that cross in a region
   /// @param complete  false: it would have taken more

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/survey.hpp"
 
-#include "rt_core/regions/look_into.hpp"
+#include "rt_core/regions/lookout.hpp"
 #include "rt_core/regions/motion.hpp"
-#include "rt_core/regions/pair_batch.hpp"
 
 namespace palpate::regions {
 namespace {
@@ -18,12 +17,6 @@ constexpr double kMostSpread = 16;
 static_assert(kMostSpread <= kMostLooks);
 /// Beside the nearest, of each that is spread over a region.
 constexpr double kBeside = 0.5;
-/// Together they wait for memory less than where they are alone, and so many count as a unit. A
-/// survey is planned as if they were alone: rounds that are begun are ended.
-constexpr std::uint32_t kTogetherPerUnit = 6;
-constexpr double kMeasured = 0.15;  // of looks; the others cannot be nearer
-constexpr double kUnitsPerLook =
-    1.0 / kLooksPerUnit + (kBoundUnits + kMeasured * kBatchUnits) / kBatch;
 constexpr std::uint32_t kRegionsPerRound = 16;
 constexpr std::uint32_t kMostRounds = 64;
 /// So many rounds are repeated, each with other places, before the next ones begin: a force is told
@@ -42,7 +35,7 @@ class Survey {
       : work_(work),
         share_(share),
         in_order_(work.memory.queue),
-        batch_(work, Take{this}),
+        lookout_(work),
         began_ns_(work.meter.elapsed_ns()),
         began_at_(work.pace.used()) {
     std::uint32_t open = 0;
@@ -59,15 +52,10 @@ class Survey {
   }
 
   bool run() noexcept {
-    for (const Active& item : work_.active()) {
-      if (!work_.is_contact(item)) continue;
-      ++felt_;
-      crossing_ += work_.is_crossing(item) ? 1u : 0u;
-    }
     sort_by_round();
     const std::uint32_t before = work_.anew ? 0 : rounds_seen();
     const std::uint32_t seen = work_.anew ? begin() : go_on(before, rounds_);
-    batch_.measure_all();
+    lookout_.measure_all();
     if (seen == before) return false;
     if (work_.anew && !work_.swept) forget_unseen(seen);
     work_.memory.pursuit.surveyed = static_cast<double>(seen) / rounds_;
@@ -76,15 +64,6 @@ class Survey {
   }
 
  private:
-  struct Take {
-    Survey* survey;
-    void operator()(std::uint32_t index, const Witness& pair) const noexcept {
-      survey->take(index, pair);
-    }
-  };
-
-  static bool is_open(const Active& item) noexcept { return item.width > kClosed; }
-
   /// @return how many rounds have been seen
   std::uint32_t begin() noexcept {
     const std::uint32_t telling = rounds_ < kTellingRounds ? rounds_ : kTellingRounds;
@@ -218,162 +197,23 @@ class Survey {
       if (!work_.is_felt(item)) return;
       look_beside(work_.frame_of(item), item.region, work_.witness_of(item).a, beside_, out);
     };
-    see_each(round, first, look_once, true);
-    see_each(round, rest, look_again, false);
-    batch_.measure_all();
-    see_each(round, beside_, beside_nearest, false);
-  }
-
-  /// Looks of regions of one pair of bodies, all in the same step.
-  struct Party {
-    Looks looks;
-    std::uint32_t of[kMostLooks];  // which active region each is of
-    const PairFrame* frame = nullptr;
-  };
-
-  /// Looks from the places that are chosen in every region of a round, and measures what they meet,
-  /// but for the last pairs.
-  /// @param most    looks of a region, at most kMostLooks
-  /// @param choose  called as choose(item, looks), to which it adds
-  /// @param unseen  regions that may have no witness yet
-  void see_each(std::uint32_t round, std::uint32_t most, auto choose, bool unseen) noexcept {
-    std::span<const std::uint32_t> left = regions_of(round);
-    while (!left.empty()) {
-      const std::size_t count = left.size() < kBatch ? left.size() : kBatch;
-      const std::span<Sight> sights = look(left.first(count), most, choose);
-      if (unseen) measure_nearest(sights);
-      measure_rest(sights);
-      if (!work_.pace.go_on()) return;
-      left = left.subspan(count);
-    }
-  }
-
-  /// Memory is slow: while one party's pairs are bounded, the looks of the next ones are on their
-  /// way; and a few looks at a time would wait for it as long as many.
-  /// @param regions  at most kBatch
-  /// @return what they have met that may be nearer than what is known, region by region
-  std::span<Sight> look(std::span<const std::uint32_t> regions, std::uint32_t most,
-                        auto choose) noexcept {
-    static_assert(kMostLooks * kBatch <= kSights);
-    Party on_their_way[kLookSteps];
-    std::size_t sent = 0;
-    std::uint32_t met = 0;
-    for (std::uint32_t k = 0, left = kLookSteps; left > 0; ++k) {
-      sent = send(regions, sent, most, choose, on_their_way[k % kLookSteps]);
-      for (std::uint32_t step = 0; step < kLookSteps && step <= k; ++step) {
-        Party& party = on_their_way[(k - step) % kLookSteps];
-        if (party.looks.count == 0) continue;
-        look_step(*work_.memory.kernels, *party.frame, step, party.looks);
-      }
-      if (sent == regions.size()) --left;
-      if (k + 1 < kLookSteps) continue;
-      if (!work_.pace.go_on()) break;
-      met = note_sights(on_their_way[(k + 1) % kLookSteps], met);
-    }
-    return std::span(work_.memory.search->sights).first(met);
-  }
-
-  /// @param party  gets looks of as many regions as there is room for; none where all are sent
-  /// @return the first region that is not sent yet
-  std::size_t send(std::span<const std::uint32_t> regions, std::size_t next, std::uint32_t most,
-                   auto choose, Party& party) noexcept {
-    Looks& looks = party.looks;
-    std::uint32_t count = looks.count = 0;
-    for (; next < regions.size() && count + most <= kMostLooks; ++next) {
-      const Active& item = work_.active()[regions[next]];
-      const PairFrame& frame = work_.frame_of(item);
-      if (count > 0 && party.frame != &frame) break;
-      party.frame = &frame;
-      if (can_look(frame)) choose(item, looks);
-      for (; count < looks.count; ++count) party.of[count] = regions[next];
-    }
-    return next;
-  }
-
-  /// @param met  so many are noted before
-  /// @return and so many with these
-  std::uint32_t note_sights(Party& party, std::uint32_t met) noexcept {
-    Looks& looks = party.looks;
-    if (looks.count == 0) return met;
-    work_.pace.charge((looks.count + kTogetherPerUnit / 2) / kTogetherPerUnit);
-    for (std::uint32_t i = looks.count; i < kBatch; ++i) {
-      looks.a[i] = looks.a[0];
-      looks.b[i] = looks.b[0];
-    }
-    float least[kBatch];
-    bound(*work_.memory.kernels, *party.frame, *work_.memory.search, work_.pace, looks.a, looks.b,
-          least);
-    std::uint32_t of = image::kNone;
-    float known = 0;
-    for (std::uint32_t i = 0; i < looks.count; ++i) {
-      if (party.of[i] != of) known = known_of(of = party.of[i]);
-      if (!(least[i] < known)) continue;
-      work_.memory.search->sights[met++] = {of, {looks.a[i], looks.b[i], least[i]}};
-    }
-    return met;
-  }
-
-  /// Of each region what seems to be the nearest: few of the others can be nearer than that.
-  void measure_nearest(std::span<Sight> sights) noexcept {
-    std::size_t end = 0;
-    for (std::size_t first = 0; first < sights.size(); first = end) {
-      std::size_t nearest = first;
-      for (end = first; end < sights.size() && sights[end].of == sights[first].of; ++end) {
-        if (sights[end].pair.distance < sights[nearest].pair.distance) nearest = end;
-      }
-      measure_once(sights[nearest]);
-    }
-    batch_.measure_all();
-  }
-  void measure_rest(std::span<Sight> sights) noexcept {
-    for (Sight& sight : sights) {
-      if (may_be_nearer(sight) && !work_.pace.go_on()) return;
-      measure_once(sight);
-    }
-  }
-  bool may_be_nearer(const Sight& sight) const noexcept {
-    return sight.pair.distance < known_of(sight.of);
-  }
-  /// What an active region's looks have to be nearer than.
-  float known_of(std::uint32_t index) const noexcept {
-    const Witness& witness = work_.witness_of(work_.active()[index]);
-    return witness.known() ? witness.distance : kFarthest;
-  }
-  void measure_once(Sight& sight) noexcept {
-    if (!may_be_nearer(sight)) return;
-    batch_.add(sight.of, sight.pair);
-    sight.pair.distance = kFarthest;
-  }
-
-  void take(std::uint32_t index, const Witness& pair) noexcept {
-    const Active& item = work_.active()[index];
-    Witness& witness = work_.witness_of(item);
-    if (witness.known() && !(pair.distance < witness.distance)) return;
-    const bool was_felt = work_.is_felt(item);
-    const bool crossed = work_.is_crossing(item);
-    witness = pair;
-    // Every look as a seed would cost a fifth of the survey.
-    note_seed(*work_.frame_of(item).a, pair, work_.kept_of(item).seeds);
-    // Contacts take time and units, too: no more are sought than can be told.
-    const bool meets = !was_felt && work_.is_felt(item);
-    const bool enters = !crossed && work_.is_crossing(item);
-    felt_ += meets ? 1u : 0u;
-    crossing_ += enters ? 1u : 0u;
-    if (meets || enters) work_.leave_for_report(felt_, crossing_);
+    const std::span<const std::uint32_t> regions = regions_of(round);
+    lookout_.see_each(regions, first, look_once, true);
+    lookout_.see_each(regions, rest, look_again, false);
+    lookout_.measure_all();
+    lookout_.see_each(regions, beside_, beside_nearest, false);
   }
 
   Work& work_;
   double share_;
   std::span<std::uint32_t> in_order_;       // of active regions, see sort_by_round()
   std::uint32_t end_of_[kMostRounds] = {};  // of each round, in that
-  PairBatch<Take> batch_;
+  Lookout lookout_;
   std::uint64_t began_ns_;    // since the tick began
   std::uint64_t began_at_;    // in units of the tick
   std::uint32_t looks_ = 0;   // spread over a region
   std::uint32_t beside_ = 0;  // beside the nearest of them
   std::uint32_t rounds_ = 0;
-  std::uint64_t felt_ = 0;      // of active regions
-  std::uint64_t crossing_ = 0;  // likewise
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a survey measures and what it passes over.
+// What a survey measures and what it passes over; what is watched for between surveys.
 #include "rt_core/regions/survey.hpp"
 
 #include <gtest/gtest.h>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rt_core/regions/look.hpp"
+#include "rt_core/regions/watch.hpp"
 #include "tests/support/baked_scene.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -62,6 +63,17 @@ struct TwoBalls {
     work.count = static_cast<std::uint32_t>(active.size());
     work.anew = work.swept = true;
     seen = regions::survey(work, 1);
+    return work.pace.used();
+  }
+
+  /// In a tick that goes on from the one before.
+  /// @return work units
+  std::uint64_t watch(std::uint64_t units) {
+    for (regions::Active& item : active) item.climbed = false;
+    Meter meter({.units = units}, {});
+    regions::Work work(memory, {.limited = true}, meter);
+    work.count = static_cast<std::uint32_t>(active.size());
+    regions::watch(work);
     return work.pace.used();
   }
 
@@ -125,6 +137,42 @@ TEST(RegionsSurvey, ends_soon_after_its_units_do) {
   for (const std::uint64_t units : {64u, 200u, 500u}) {
     TwoBalls s(2.05);
     EXPECT_LE(s.survey(units), units + 2 * regions::kBatchUnits) << units;
+  }
+}
+
+TEST(RegionsWatch, what_has_come_near_is_felt_before_it_is_searched) {
+  TwoBalls surveyed(2.05);
+  static_cast<void>(surveyed.survey(kPlenty));
+  TwoBalls watched(2.05);
+  constexpr int kTicks = 200;
+  for (int tick = 0; tick < kTicks; ++tick) static_cast<void>(watched.watch(300));
+  const auto delta = static_cast<float>(watched.pair.delta);
+  int felt = 0;
+  for (std::uint32_t region = 0; region < watched.active.size(); ++region) {
+    const regions::Witness& seen = surveyed.witnesses[region];
+    if (!seen.nearer_than(delta)) continue;
+    ++felt;
+    EXPECT_LE(watched.witnesses[region].distance, seen.distance + 0.05f * delta) << region;
+  }
+  EXPECT_GT(felt, 0);
+}
+
+TEST(RegionsWatch, what_is_proved_to_be_far_takes_nothing) {
+  TwoBalls s(2.05);
+  for (regions::Active& item : s.active) {
+    item.rest = static_cast<float>(s.pair.delta);
+    item.width = 0;
+  }
+  EXPECT_EQ(s.watch(1000), 0u);
+  for (const regions::Witness& witness : s.witnesses) EXPECT_FALSE(witness.known());
+}
+
+TEST(RegionsWatch, leaves_most_of_a_tick_to_searches) {
+  for (const std::uint64_t units : {200u, 500u, 2000u}) {
+    TwoBalls s(2.05);
+    for (int tick = 0; tick < 10; ++tick) {
+      EXPECT_LE(s.watch(units), units / 2 + regions::kMaxClimb * 10) << units;
+    }
   }
 }
 
