@@ -124,7 +124,8 @@ struct Demand {
 /// measured at the present poses and bound the distances from above. That is exact for as long as
 /// no other pair can have come as near; then the region is searched again (search.hpp), under a
 /// budget the widest interval first and closed in steps, after a cheap look at the witness's
-/// neighbours. Witnesses of fast bodies climb before all searches (track.hpp). One search that the
+/// neighbours. Witnesses of fast bodies climb before all searches (track.hpp), and where few
+/// regions are felt, looks and climbs find what comes near others (watch.hpp). One search that the
 /// budget ends goes on in the next tick, before all others (unfinished.hpp). A tolerance is shared
 /// so that what costs more to search may stay open wider. A budget that is far too small for the
 /// searches goes to following the witnesses instead where that brings them nearer (follow.hpp).
