@@ -15,6 +15,11 @@ constexpr double kFewestLooks = 4;
 /// More see little that is new in a region; a climb from the nearest does more.
 constexpr double kMostSpread = 16;
 static_assert(kMostSpread <= kMostLooks);
+/// Of a region, so that more regions are seen: what fewer meet in each is too far from its nearest.
+constexpr double kLeastSpread = 10;
+/// Of regions that are seen: where more of them are felt, those that are not seen push as their
+/// neighbours do, and it is better to know some well.
+constexpr double kFeltAllOver = 0.75;
 /// Beside the nearest, of each that is spread over a region.
 constexpr double kBeside = 0.5;
 constexpr std::uint32_t kRegionsPerRound = 16;
@@ -42,11 +47,7 @@ class Survey {
     for (const Active& item : work.active()) open += is_open(item) ? 1u : 0u;
     const double telling = open < kTelling ? open : kTelling;
     const double units = share * work.units_left(expected_ns());
-    const double each = units / (telling * (1 + kBeside) * kUnitsPerLook);
-    looks_ = static_cast<std::uint32_t>(each < kFewestLooks  ? kFewestLooks
-                                        : each < kMostSpread ? each
-                                                             : kMostSpread);
-    beside_ = static_cast<std::uint32_t>(kBeside * looks_);
+    set_looks(units / (telling * (1 + kBeside) * kUnitsPerLook), kFewestLooks, kMostSpread);
     const std::uint32_t rounds = open / kRegionsPerRound + 1;
     rounds_ = rounds < kMostRounds ? rounds : kMostRounds;
   }
@@ -67,8 +68,11 @@ class Survey {
   /// @return how many rounds have been seen
   std::uint32_t begin() noexcept {
     const std::uint32_t telling = rounds_ < kTellingRounds ? rounds_ : kTellingRounds;
-    see(0);
-    const std::uint32_t seen = go_on(1, telling);
+    std::uint32_t seen = 0;
+    do {
+      see(seen++);
+      spread_thinner(seen, telling);
+    } while (seen < telling && has_units_for(seen, share_));
     if (seen < telling) return seen;
     for (std::uint32_t i = telling; i < kMostRepeats * telling; ++i) {
       if (felt_can_be_searched()) break;
@@ -76,6 +80,27 @@ class Survey {
       see(i % telling);
     }
     return go_on(seen, rounds_);
+  }
+
+  void set_looks(double spread, double fewest, double most) noexcept {
+    looks_ = static_cast<std::uint32_t>(spread < fewest ? fewest : spread < most ? spread : most);
+    beside_ = static_cast<std::uint32_t>(kBeside * looks_);
+  }
+
+  /// So that all telling rounds are seen, where what is felt is felt here and there: by what those
+  /// seen so far have taken of what they might have.
+  void spread_thinner(std::uint32_t seen, std::uint32_t telling) noexcept {
+    for (const std::uint32_t i : regions_of(seen - 1)) {
+      ++regions_seen_;
+      felt_of_seen_ += work_.is_felt(work_.active()[i]) ? 1u : 0u;
+    }
+    most_units_seen_ += most_units(seen - 1);
+    if (looks_ <= kLeastSpread || felt_of_seen_ > kFeltAllOver * regions_seen_) return;
+    double most = 0;
+    for (std::uint32_t round = seen; round < telling; ++round) most += most_units(round);
+    const double expected = most * static_cast<double>(used()) / most_units_seen_;
+    const double left = units_left(share_);
+    if (left < expected) set_looks(looks_ * left / expected, kLeastSpread, looks_);
   }
 
   /// Rounds are of everywhere, each; the rest is of where the bodies were, and felt on some sides
@@ -159,10 +184,20 @@ class Survey {
   /// A round that is begun is ended, as far as that can be told: half of one is of one side.
   bool has_units_for(std::uint32_t round, double share) noexcept {
     if (!work_.pace.go_on()) return false;
-    const auto regions = static_cast<double>(regions_of(round).size());
-    const auto used = static_cast<double>(work_.pace.used());
-    return used + regions * (looks_ + beside_) * kUnitsPerLook <= share * (used + affordable());
+    return most_units(round) <= units_left(share);
   }
+
+  /// Where each region of it takes all looks.
+  double most_units(std::uint32_t round) const noexcept {
+    return static_cast<double>(regions_of(round).size()) * (looks_ + beside_) * kUnitsPerLook;
+  }
+  /// Of a share of the tick.
+  double units_left(double share) const noexcept {
+    const auto used = static_cast<double>(work_.pace.used());
+    return share * (used + affordable()) - used;
+  }
+  /// By the survey.
+  std::uint64_t used() const noexcept { return work_.pace.used() - began_at_; }
 
   /// Work units that the tick has left: at the pace of the survey, which is another than that of
   /// what came before it; before its first round, at that of surveys of late.
@@ -172,8 +207,7 @@ class Survey {
   }
   /// Time that a unit has taken so far; 0: none was used, or there is no clock.
   std::uint64_t pace_ns() const noexcept {
-    const std::uint64_t used = work_.pace.used() - began_at_;
-    return used > 0 ? (work_.meter.elapsed_ns() - began_ns_) / used : 0;
+    return used() > 0 ? (work_.meter.elapsed_ns() - began_ns_) / used() : 0;
   }
   /// Before the first round: as surveys of late, which what the host did to one may have made long,
   /// but no longer than other units.
@@ -214,6 +248,9 @@ class Survey {
   std::uint32_t looks_ = 0;   // spread over a region
   std::uint32_t beside_ = 0;  // beside the nearest of them
   std::uint32_t rounds_ = 0;
+  std::uint32_t regions_seen_ = 0;
+  std::uint32_t felt_of_seen_ = 0;
+  double most_units_seen_ = 0;  // of the rounds seen, see most_units()
 };
 
 }  // namespace

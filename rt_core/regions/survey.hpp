@@ -15,11 +15,12 @@ namespace palpate::regions {
 /// (crowd.hpp), and told wrong by many from one. Before others begin the first twelve are repeated
 /// up to eight times, with other places, until what is left does for searching what is felt. A
 /// round begins if there seem to be units and time for all of it. A region has four to sixteen
-/// looks in a round, as many as there are units for if 64 are to be seen. In ticks that do not
-/// begin anew (Work::anew), goes on where the last survey ended (Pursuit::surveyed), round by
-/// round. In those that do, but not after a jump, regions that it does not get to forget their
-/// witnesses, unless these cross, their bodies are slow, or nothing of what it has seen of the two
-/// is felt.
+/// looks in a round, as many as there are units for if 64 are to be seen; fewer, down to ten, if
+/// the first twelve rounds are all to be seen and less than three quarters of what has been is
+/// felt. In ticks that do not begin anew (Work::anew), goes on where the last survey ended
+/// (Pursuit::surveyed), round by round. In those that do, but not after a jump, regions that it
+/// does not get to forget their witnesses, unless these cross, their bodies are slow, or nothing of
+/// what it has seen of the two is felt.
 ///
 /// Proves nothing; witnesses are at the present poses as before. Where an image cannot be looked up
 /// in, nothing. Takes the queue of the query's memory as scratch. Widths and urgencies are to be

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -131,6 +133,31 @@ TEST(RegionsSurvey, little_of_what_looks_meet_is_measured) {
   for (const regions::RegionPairs& of_region : s.kept) spread += of_region.seeds.dives;
   constexpr double kEach = static_cast<double>(regions::kBatchUnits) / regions::kBatch;
   EXPECT_LT(used, spread * (1.0 / regions::kLooksPerUnit + kEach));
+}
+
+/// Regions that are seen.
+std::size_t seen_by(const TwoBalls& s) {
+  return static_cast<std::size_t>(std::count_if(
+      s.kept.begin(), s.kept.end(),
+      [](const regions::RegionPairs& of_region) { return of_region.seeds.dives > 0; }));
+}
+
+/// With sixteen looks of each that may be felt it would be some 120.
+TEST(RegionsSurvey, more_regions_are_seen_where_few_are_felt) {
+  TwoBalls s(1.8);
+  static_cast<void>(s.survey(1000));
+  EXPECT_GT(seen_by(s), 160u);
+}
+
+/// As little is left there for each, and each has all of the looks there are.
+TEST(RegionsSurvey, regions_are_seen_as_well_as_ever_where_all_are_felt) {
+  TwoBalls s(0, 0.95);
+  static_cast<void>(s.survey(1000));
+  EXPECT_LT(seen_by(s), 160u);
+  for (std::uint32_t region = 0; region < s.kept.size(); ++region) {
+    const std::uint32_t looks = s.kept[region].seeds.dives;
+    EXPECT_TRUE(looks == 0 || looks == 16) << region << " has " << looks;
+  }
 }
 
 TEST(RegionsSurvey, ends_soon_after_its_units_do) {
