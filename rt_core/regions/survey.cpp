@@ -98,8 +98,8 @@ class Survey {
     if (looks_ <= kLeastSpread || felt_of_seen_ > kFeltAllOver * regions_seen_) return;
     double most = 0;
     for (std::uint32_t round = seen; round < telling; ++round) most += most_units(round);
-    const double expected = most * static_cast<double>(used()) / most_units_seen_;
-    const double left = units_left(share_);
+    const double expected = most * static_cast<double>(spent()) / most_units_seen_;
+    const double left = left_of(share_);
     if (left < expected) set_looks(looks_ * left / expected, kLeastSpread, looks_);
   }
 
@@ -184,20 +184,20 @@ class Survey {
   /// A round that is begun is ended, as far as that can be told: half of one is of one side.
   bool has_units_for(std::uint32_t round, double share) noexcept {
     if (!work_.pace.go_on()) return false;
-    return most_units(round) <= units_left(share);
+    return most_units(round) <= left_of(share);
   }
 
   /// Where each region of it takes all looks.
   double most_units(std::uint32_t round) const noexcept {
     return static_cast<double>(regions_of(round).size()) * (looks_ + beside_) * kUnitsPerLook;
   }
-  /// Of a share of the tick.
-  double units_left(double share) const noexcept {
+  /// Units that a share of the tick has left.
+  double left_of(double share) const noexcept {
     const auto used = static_cast<double>(work_.pace.used());
     return share * (used + affordable()) - used;
   }
-  /// By the survey.
-  std::uint64_t used() const noexcept { return work_.pace.used() - began_at_; }
+  /// Units, by the survey.
+  std::uint64_t spent() const noexcept { return work_.pace.used() - began_at_; }
 
   /// Work units that the tick has left: at the pace of the survey, which is another than that of
   /// what came before it; before its first round, at that of surveys of late.
@@ -207,7 +207,7 @@ class Survey {
   }
   /// Time that a unit has taken so far; 0: none was used, or there is no clock.
   std::uint64_t pace_ns() const noexcept {
-    return used() > 0 ? (work_.meter.elapsed_ns() - began_ns_) / used() : 0;
+    return spent() > 0 ? (work_.meter.elapsed_ns() - began_ns_) / spent() : 0;
   }
   /// Before the first round: as surveys of late, which what the host did to one may have made long,
   /// but no longer than other units.
