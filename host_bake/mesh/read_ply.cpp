@@ -124,8 +124,9 @@ Property read_property(Text& text, Element::Kind kind) {
 /// From behind the word `ply` to the first byte of the data.
 PlyHeader read_header(Text& text) {
   PlyHeader header;
+  std::string_view line_end;
   for (;;) {
-    text.skip_line();
+    line_end = text.skip_line();
     const std::string_view keyword = text.word_on_line();
     if (keyword == "end_header") break;
     if (text.at_end()) text.refuse("'end_header' missing", "copy or export the mesh again");
@@ -140,7 +141,7 @@ PlyHeader read_header(Text& text) {
       text.refuse("the PLY header is too long", "export the mesh again");
     }
   }
-  text.skip_line();
+  text.skip_line_ending_as(line_end);
   return header;
 }
 

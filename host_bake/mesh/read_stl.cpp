@@ -19,12 +19,16 @@ void push_corner(Soup& soup, const Point& p) {
   soup.points.push_back(p);
 }
 
+/// `found` is empty at the end of the file.
+void expect(const Text& text, std::string_view wanted, std::string_view found) {
+  if (equals_caseless(found, wanted)) return;
+  text.refuse("'" + std::string(wanted) + "' missing" +
+                  (found.empty() ? ", the file is cut" : " before " + quoted(found)),
+              "copy or export the mesh again");
+}
+
 void expect(Text& text, std::initializer_list<std::string_view> words) {
-  for (const std::string_view wanted : words) {
-    if (!equals_caseless(text.word(), wanted)) {
-      text.refuse("'" + std::string(wanted) + "' missing", "copy or export the mesh again");
-    }
-  }
+  for (const std::string_view wanted : words) expect(text, wanted, text.word());
 }
 
 /// Behind the word `facet`. The normal is passed over: the order of the vertices says the same and
@@ -43,6 +47,20 @@ void read_facet(Text& text, Soup& soup) {
   soup.end_polygon();
 }
 
+void require_size(std::size_t counted, std::size_t found, const std::string& file) {
+  if (found == counted) return;
+  const std::string counts = "the header counts " + std::to_string(counted / kFacetBytes) +
+                             " triangles but " + std::to_string(found) + " bytes follow, " +
+                             std::to_string(kFacetBytes) + " a triangle";
+  if (found < counted) {
+    throw InputRefused("the file is cut or its count is wrong (" + counts + ")", file,
+                       "copy or export the mesh again");
+  }
+  throw InputRefused(
+      std::to_string(found - counted) + " bytes after the last triangle (" + counts + ")", file,
+      "remove them if they are no triangles, or export the mesh again");
+}
+
 }  // namespace
 
 Soup read_stl_ascii(std::string_view bytes, const std::string& file) {
@@ -51,13 +69,14 @@ Soup read_stl_ascii(std::string_view bytes, const std::string& file) {
   for (;;) {
     const std::string_view word = text.word();
     if (word.empty()) return soup;
-    if (!equals_caseless(word, "solid")) text.refuse("'solid' missing", "export the mesh again");
+    expect(text, "solid", word);
     text.skip_line();  // the name, which may be any text
     std::string_view inner = text.word();
     for (; equals_caseless(inner, "facet"); inner = text.word()) read_facet(text, soup);
-    if (!equals_caseless(inner, "endsolid")) {
-      text.refuse("'endsolid' missing", "copy or export the mesh again");
-    }
+    // Some exporters, numpy-stl among them, write two words.
+    const bool two_words =
+        equals_caseless(inner, "end") && equals_caseless(text.word_on_line(), "solid");
+    if (!two_words) expect(text, "endsolid", inner);
     text.skip_line();
   }
 }
@@ -72,12 +91,7 @@ Soup read_stl_binary(std::string_view bytes, const std::string& file) {
   Bytes in(bytes, file, std::endian::little);
   in.skip(kHeaderBytes);
   const auto facets = in.read<std::uint32_t>();
-  if (facets * kFacetBytes != in.left()) {
-    throw InputRefused("the header counts " + std::to_string(facets) + " triangles but " +
-                           std::to_string(in.left()) + " bytes follow, " +
-                           std::to_string(kFacetBytes) + " a triangle",
-                       file, "copy or export the mesh again");
-  }
+  require_size(facets * kFacetBytes, in.left(), file);
   Soup soup;
   soup.points.reserve(3 * std::size_t{facets});
   soup.corners.reserve(3 * std::size_t{facets});

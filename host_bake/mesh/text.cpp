@@ -9,15 +9,11 @@
 namespace palpate::bake {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 
-/// What a message shows of a word of the file: short, printable.
-std::string quoted(std::string_view word) {
-  constexpr std::size_t kMostShown = 24;
-  std::string text = "'";
-  for (const char c : word.substr(0, kMostShown)) text += c >= ' ' && c <= '~' ? c : '?';
-  return text + (word.size() > kMostShown ? "...'" : "'");
-}
+constexpr std::string_view kLineEnds[] = {"\n", "\r\n", "\r\r\n", "\r"};
+
+bool ends_line(char c) { return c == '\n' || c == '\r'; }
 
 /// from_chars knows no plus sign.
 std::string_view without_plus(std::string_view word) {
@@ -38,9 +34,9 @@ void Text::skip_blanks() {
   for (; at_ < bytes_.size(); ++at_) {
     if (is_blank(bytes_[at_])) continue;
     if (!rules_.continuations || bytes_[at_] != '\\') return;
-    const std::size_t next = bytes_.find_first_not_of('\r', at_ + 1);
-    if (next == std::string_view::npos || bytes_[next] != '\n') return;
-    at_ = next;
+    const std::string_view line_end = line_end_at(at_ + 1);
+    if (line_end.empty()) return;
+    at_ += line_end.size();
     ++line_;
   }
 }
@@ -48,10 +44,10 @@ void Text::skip_blanks() {
 std::string_view Text::word_on_line() {
   skip_blanks();
   const std::size_t begin = at_;
-  while (at_ < bytes_.size() && bytes_[at_] != '\n' && !is_blank(bytes_[at_])) ++at_;
+  while (at_ < bytes_.size() && !ends_line(bytes_[at_]) && !is_blank(bytes_[at_])) ++at_;
   const std::string_view word = bytes_.substr(begin, at_ - begin);
   if (rules_.comments && word.starts_with('#')) {
-    at_ = std::min(bytes_.find('\n', begin), bytes_.size());
+    at_ = std::min(bytes_.find_first_of("\r\n", begin), bytes_.size());
     return {};
   }
   return word;
@@ -65,10 +61,29 @@ std::string_view Text::word() {
   }
 }
 
-void Text::skip_line() {
-  const std::size_t newline = bytes_.find('\n', at_);
-  at_ = newline == std::string_view::npos ? bytes_.size() : newline + 1;
-  if (newline != std::string_view::npos) ++line_;
+std::string_view Text::line_end_at(std::size_t at) const {
+  for (const std::string_view line_end : kLineEnds) {
+    if (at < bytes_.size() && bytes_.substr(at).starts_with(line_end)) return line_end;
+  }
+  return {};
+}
+
+std::string_view Text::skip_line() {
+  at_ = std::min(bytes_.find_first_of("\r\n", at_), bytes_.size());
+  const std::string_view line_end = line_end_at(at_);
+  at_ += line_end.size();
+  if (!line_end.empty()) ++line_;
+  return line_end;
+}
+
+void Text::skip_line_ending_as(std::string_view line_end) {
+  const std::size_t begin = std::min(bytes_.find_first_of("\r\n", at_), bytes_.size());
+  if (line_end.empty() || !bytes_.substr(begin).starts_with(line_end)) {
+    skip_line();
+    return;
+  }
+  at_ = begin + line_end.size();
+  ++line_;
 }
 
 double Text::number(std::string_view word, std::string_view what) const {
@@ -93,6 +108,13 @@ std::int64_t Text::integer(std::string_view word, std::string_view what) const {
 
 void Text::refuse(const std::string& what, const std::string& mend) const {
   throw InputRefused(what, file_ + ":" + std::to_string(line_), mend);
+}
+
+std::string quoted(std::string_view word) {
+  constexpr std::size_t kMostShown = 24;
+  std::string text = "'";
+  for (const char c : word.substr(0, kMostShown)) text += c >= ' ' && c <= '~' ? c : '?';
+  return text + (word.size() > kMostShown ? "...'" : "'");
 }
 
 bool equals_caseless(std::string_view word, std::string_view lower) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words and numbers of a text file, with the line for errors.
+// Words and numbers of a text file, with the line for errors. Lines end in LF, CR LF, CR CR LF (a
+// CR LF that was converted again) or CR alone.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +23,10 @@ class Text {
   std::string_view word();
   /// The next word on this line; empty where there is none.
   std::string_view word_on_line();
-  void skip_line();
+  /// Skips what is left of the line; returns its end, empty at the end of the file.
+  std::string_view skip_line();
+  /// The same where a line can only end as the given one: bytes behind it belong to binary data.
+  void skip_line_ending_as(std::string_view line_end);
   [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
   /// Bytes not yet read.
   [[nodiscard]] std::size_t left() const { return bytes_.size() - at_; }
@@ -38,6 +42,7 @@ class Text {
 
  private:
   void skip_blanks();
+  [[nodiscard]] std::string_view line_end_at(std::size_t at) const;
 
   std::string_view bytes_;
   std::string file_;
@@ -45,6 +50,9 @@ class Text {
   std::size_t at_ = 0;
   std::size_t line_ = 1;
 };
+
+/// What a message shows of a word of the file: short, printable, in quotes.
+std::string quoted(std::string_view word);
 
 /// Equal apart from the case of ASCII letters? `lower` is in lower case.
 bool equals_caseless(std::string_view word, std::string_view lower);

@@ -106,6 +106,31 @@ TEST(Read, Stl_variants_are_read) {
   expect_cube(to_stl_binary(cube()), ".txt");
 }
 
+TEST(Read, Stl_of_exporters_that_end_a_solid_in_two_words_is_read) {
+  const std::string plain = replaced(to_stl_ascii(cube()), "endsolid", "end solid");
+  expect_cube(plain, ".stl");
+  expect_cube(upper(plain), ".stl");
+  expect_cube("solid nothing\nend solid nothing\n" + plain, ".stl");
+  EXPECT_NE(refusal(replaced(plain, "end solid", "end\nsolid"), ".stl").find("'endsolid' missing"),
+            std::string::npos);
+}
+
+TEST(Read, Lines_that_end_in_carriage_returns_alone_are_read) {
+  for (const char* line_end : {"\r", "\r\n", "\r\r\n"}) {
+    SCOPED_TRACE(line_end);
+    const auto ended = [&](const std::string& text) { return replaced(text, "\n", line_end); };
+    expect_cube(ended("# a comment\no thing\n" + to_obj(cube())), ".obj");
+    expect_cube(ended(replaced(to_obj(cube()), "f ", "f \\\n")), ".obj");
+    expect_cube(ended("# a comment\n" + to_off(cube())), ".off");
+    expect_cube(ended(to_ply_ascii(cube())), ".ply");
+    expect_cube(ended(to_stl_ascii(cube())), ".stl");
+    const std::string stl = replaced(to_stl_ascii(cube()), "endsolid", "end solid");
+    EXPECT_EQ(read_as(ended(stl + to_stl_ascii(cube({5, 0, 0}))), ".stl").mesh.faces.size(), 24U);
+    EXPECT_NE(refusal(ended("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n"), ".obj").find(":4: "),
+              std::string::npos);
+  }
+}
+
 TEST(Read, Stl_several_solids_are_one_mesh) {
   const ReadMesh read = read_as(to_stl_ascii(cube()) + to_stl_ascii(cube({5, 0, 0})), ".stl");
   EXPECT_EQ(read.mesh.faces.size(), 24U);
@@ -121,12 +146,17 @@ TEST(Read, Ply_plain_is_read) {
 TEST(Read, Ply_variants_are_read) {
   expect_cube(replaced(to_ply_ascii(cube()), "\n", "\r\n"), ".ply");
   expect_cube(to_ply_binary(cube(), std::endian::little, "\r\n"), ".ply");
+  expect_cube(to_ply_binary(cube(), std::endian::little, "\r"), ".ply");
   expect_cube(to_ply_ascii(cube()), ".txt");
-  // A data byte that looks like white space right behind the header.
-  Mesh mesh = cube();
-  mesh.points[0][0] = static_cast<double>(std::bit_cast<float>(0x0A0A0A0AU));
-  const Mesh read = read_as(to_ply_binary(mesh, std::endian::little), ".ply").mesh;
-  EXPECT_EQ(surface(read), surface(mesh));
+  // A data byte that looks like a line end right behind the header.
+  for (const std::uint32_t bytes : {0x0A0A0A0AU, 0x0D0D0D0DU, 0x0D0D0A0DU}) {
+    for (const char* line_end : {"\n", "\r\n", "\r"}) {
+      Mesh mesh = cube();
+      mesh.points[0][0] = static_cast<double>(std::bit_cast<float>(bytes));
+      const std::string file = to_ply_binary(mesh, std::endian::little, line_end);
+      EXPECT_EQ(surface(read_as(file, ".ply").mesh), surface(mesh)) << bytes;
+    }
+  }
 }
 
 /// A PLY with the given types, faces before vertices and an element that says nothing to us.
@@ -268,6 +298,13 @@ TEST(Read, Bad_files_are_refused_with_place_and_mend) {
        "vertex_indices"},
       {"plain text\n", ".ply", "not a PLY"},
       {to_stl_binary(cube()) + "x", ".stl", "counts 12 triangles but 601 bytes"},
+      {to_stl_binary(cube()) + "seven b", ".stl", "7 bytes after the last triangle"},
+      {to_stl_binary(cube()).substr(0, 300), ".stl", "the file is cut"},
+      {to_stl_ascii(cube()).substr(0, 300), ".stl", "missing"},
+      {replaced(to_stl_ascii(cube()), "endsolid", "the end"), ".stl",
+       "'endsolid' missing before 'the'"},
+      {replaced(to_stl_ascii(cube()), "endsolid of a test\n", ""), ".stl",
+       "'endsolid' missing, the file is cut"},
       {replaced(to_stl_ascii(cube()), "endloop", "vertex 0 0 0\nendloop"), ".stl",
        "'endloop' missing"},
       {replaced(to_stl_ascii(cube()), "vertex 1", "vertex one"), ".stl", "'one' is not a number"},
