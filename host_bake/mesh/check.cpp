@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "host_bake/base/error.hpp"
+#include "host_bake/mesh/cracks.hpp"
 #include "host_bake/mesh/crossings.hpp"
 #include "host_bake/mesh/facing.hpp"
 #include "host_bake/mesh/topology.hpp"
@@ -59,6 +60,16 @@ bool check_numbers(const Mesh& mesh, CheckReport& report) {
                 "export the mesh again");
   report_places(report, "no triangles", Severity::error, none, "export a surface");
   return report.findings.empty();
+}
+
+/// What else is wrong at a crack (vertices of several fans, open edges) goes with it.
+void check_cracks(const Mesh& mesh, std::span<const Side> sides, CheckReport& report) {
+  const Cracks cracks = find_cracks(mesh, sides);
+  Places places;
+  for (const Point& corner : cracks.corners) places.add(corner);
+  report_places(report, "corners nearly coincide", Severity::error, places,
+                "weld them (merge by distance) where the mesh was made");
+  if (places.count > 0) report.findings.back().largest_gap_m = cracks.largest_gap_m;
 }
 
 void check_faces(const Mesh& mesh, CheckReport& report) {
@@ -211,8 +222,9 @@ CheckReport check(const Mesh& mesh) {
   report.vertices = mesh.points.size();
   report.faces = mesh.faces.size();
   if (!check_numbers(mesh, report)) return report;
-  check_faces(mesh, report);
   const std::vector<Side> sides = sorted_sides(mesh.faces);
+  check_cracks(mesh, sides, report);
+  check_faces(mesh, report);
   const bool sound = check_edges(mesh, sides, report);
   Components components = components_of(mesh.faces, sides);
   // Without one orientation for each component there is no inside to speak of; repair() makes it
@@ -230,6 +242,11 @@ CheckReport check(const Mesh& mesh) {
 
 std::string describe(const Finding& finding) {
   std::string text = std::to_string(finding.count) + " x " + finding.rule;
+  if (finding.largest_gap_m > 0) {
+    char gap[48];
+    std::snprintf(gap, sizeof gap, " (largest gap %.2g m)", finding.largest_gap_m);
+    text += gap;
+  }
   for (std::size_t i = 0; i < finding.first.size(); ++i) {
     const Point& p = finding.first[i];
     char place[96];

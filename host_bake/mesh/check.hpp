@@ -24,6 +24,7 @@ struct Finding {
   std::size_t count = 0;     ///< places
   std::vector<Point> first;  ///< the first few of them, metres
   std::string mend;          ///< what to do about it
+  double largest_gap_m = 0;  ///< of "corners nearly coincide"
 };
 
 struct CheckReport {
@@ -41,9 +42,10 @@ struct CheckReport {
   [[nodiscard]] bool clean() const;     ///< no findings at all but open boundaries
 };
 
-/// The rules, all by exact predicates:
-/// - error: coordinate not finite; index out of range; no triangles; too many overlapping faces (a
-///   heap of copies, see crossings.hpp).
+/// The rules, all by exact predicates but that of cracks:
+/// - error: coordinate not finite; index out of range; no triangles; corners nearly coincide (a
+///   crack, see cracks.hpp: what is meant as one surface has no inside, and repair() cannot close
+///   it); too many overlapping faces (a heap of copies, see crossings.hpp).
 /// - repairable: degenerate face (repeats a vertex); duplicate face (same three vertices as an
 ///   earlier one, whichever way round); non-manifold edge (three faces or more); non-manifold
 ///   vertex (its faces form more than one fan); inconsistent orientation (an edge whose two faces

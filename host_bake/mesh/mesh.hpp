@@ -30,4 +30,8 @@ struct NormalMesh {
 /// zero or not finite. Unreferenced vertices do not count. O(n) expected.
 NormalMesh normalise(const Mesh& mesh);
 
+/// The radius of that sphere in metres; 0 where there is none to measure. Precondition: finite
+/// coordinates, indices in range. O(n) expected.
+double radius_of(const Mesh& mesh);
+
 }  // namespace palpate::bake

@@ -67,46 +67,76 @@ double radius_about(const Point& centre, const std::vector<Point>& points) {
   return std::sqrt(squared);
 }
 
+/// The mesh about the centre of its box at size 1: no scale or offset of the input can overflow or
+/// cancel in what follows.
+struct Scaled {
+  std::vector<char> used;     ///< of each vertex: a face refers to it
+  std::vector<Point> points;  ///< of each vertex
+  Point centre{};             ///< of the smallest sphere about those used
+  double radius = 0;
+};
+
+double longest_side(const Extent& box) {
+  return std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
+}
+
+Point middle_of(const Extent& box) {
+  return {box.low[0] / 2 + box.high[0] / 2, box.low[1] / 2 + box.high[1] / 2,
+          box.low[2] / 2 + box.high[2] / 2};
+}
+
+/// Precondition: a box of normal size.
+Scaled scaled_into(const Extent& box, const Mesh& mesh) {
+  const Point middle = middle_of(box);
+  const double size = longest_side(box);
+  Scaled scaled;
+  scaled.used.resize(mesh.points.size(), 0);
+  for (const Face& face : mesh.faces)
+    for (const std::uint32_t v : face) scaled.used[v] = 1;
+  scaled.points.resize(mesh.points.size(), Point{});
+  std::vector<Point> referenced;
+  for (std::size_t v = 0; v < scaled.points.size(); ++v) {
+    if (!scaled.used[v]) continue;
+    for (std::size_t i = 0; i < 3; ++i)
+      scaled.points[v][i] = (mesh.points[v][i] - middle[i]) / size;
+    referenced.push_back(scaled.points[v]);
+  }
+  scaled.centre = centre_of(referenced);
+  scaled.radius = radius_about(scaled.centre, referenced);
+  return scaled;
+}
+
 }  // namespace
+
+double radius_of(const Mesh& mesh) {
+  const Extent box = box_of(mesh);
+  const double size = longest_side(box);
+  return std::isnormal(size) ? size * scaled_into(box, mesh).radius : 0;
+}
 
 NormalMesh normalise(const Mesh& mesh) {
   if (mesh.faces.empty())
     throw InputRefused("mesh is empty", "no faces", "give a mesh with triangles");
   const Extent box = box_of(mesh);
-  const Point middle = {box.low[0] / 2 + box.high[0] / 2, box.low[1] / 2 + box.high[1] / 2,
-                        box.low[2] / 2 + box.high[2] / 2};
-  const double size =
-      std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
+  const double size = longest_side(box);
   if (!std::isnormal(size))
     throw InputRefused("mesh has no measurable size",
                        "from " + text(box.low) + " to " + text(box.high),
                        "give a mesh of finite extent in metres, or set the unit scale");
 
-  // Everything below happens about the box centre at size 1: no scale or offset of the input can
-  // overflow or cancel in it.
-  std::vector<char> used(mesh.points.size(), 0);
-  for (const Face& face : mesh.faces)
-    for (const std::uint32_t v : face) used[v] = 1;
-  std::vector<Point> scaled(mesh.points.size(), Point{});
-  std::vector<Point> referenced;
-  for (std::size_t v = 0; v < scaled.size(); ++v) {
-    if (!used[v]) continue;
-    for (std::size_t i = 0; i < 3; ++i) scaled[v][i] = (mesh.points[v][i] - middle[i]) / size;
-    referenced.push_back(scaled[v]);
-  }
-  const Point centre = centre_of(referenced);
-  const double radius = radius_about(centre, referenced);
-
+  const Scaled scaled = scaled_into(box, mesh);
   NormalMesh normal;
   normal.faces = mesh.faces;
-  normal.points.resize(scaled.size(), {0, 0, 0});
-  for (std::size_t v = 0; v < scaled.size(); ++v) {
-    if (!used[v]) continue;
+  normal.points.resize(mesh.points.size(), {0, 0, 0});
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    if (!scaled.used[v]) continue;
     for (std::size_t i = 0; i < 3; ++i)
-      normal.points[v][i] = static_cast<float>((scaled[v][i] - centre[i]) / radius);
+      normal.points[v][i] =
+          static_cast<float>((scaled.points[v][i] - scaled.centre[i]) / scaled.radius);
   }
-  for (std::size_t i = 0; i < 3; ++i) normal.centre_m[i] = middle[i] + size * centre[i];
-  normal.radius_m = size * radius;
+  const Point middle = middle_of(box);
+  for (std::size_t i = 0; i < 3; ++i) normal.centre_m[i] = middle[i] + size * scaled.centre[i];
+  normal.radius_m = size * scaled.radius;
   return normal;
 }
 

@@ -143,13 +143,19 @@ ReadMesh read_mesh(const std::filesystem::path& file, double unit_scale) {
   require_sound(soup, file.string());
   result.file_vertices = soup.points.size();
   result.file_faces = soup.polygon_ends.size();
-  result.mesh.points = weld(soup, !says_welded(bytes));
+  const bool welded = says_welded(bytes);
+  result.mesh.points = weld(soup, !welded);
   scale(result.mesh.points, unit_scale, file.string());
   std::size_t begin = 0;
   for (const std::uint32_t end : soup.polygon_ends) {
     triangulate(result.mesh.points, std::span(soup.corners).subspan(begin, end - begin),
                 result.mesh.faces);
     begin = end;
+  }
+  if (!welded) result.welded = weld_coincident(result.mesh);
+  if (result.mesh.faces.empty()) {
+    throw InputRefused("every triangle is thinner than what positions are rounded by",
+                       file.string(), "export a surface with an area");
   }
   return result;
 }

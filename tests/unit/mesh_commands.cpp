@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstdio>
 #include <filesystem>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -91,6 +94,60 @@ TEST_F(MeshCommands, bake_with_repair_does_it_in_one_step) {
   const std::string file = write("double.ply", m);
   expect_refused(palpate({"bake", file, "-o", out(".palp")}), 3, "duplicate");
   EXPECT_EQ(palpate({"bake", file, "-o", out(".palp"), "--repair", "--quiet"}).status, 0);
+}
+
+/// An octahedron as ascii STL, each corner of each face off by up to `off` of its radius of 1.
+std::string octahedron_soup(double off) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> error(-off, off);
+  std::string text = "solid soup\n";
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    const bool turned = std::popcount(octant) % 2 != 0;
+    for (unsigned corner = 0; corner < 3; ++corner) {
+      const unsigned axis = turned ? 2 - corner : corner;
+      text += "vertex";
+      for (unsigned i = 0; i < 3; ++i) {
+        const double x = i != axis ? 0 : (octant >> i & 1U) != 0 ? -1 : 1;
+        char word[40];
+        std::snprintf(word, sizeof word, " %.17g", x + error(random));
+        text += word;
+      }
+      text += "\n";
+    }
+    text += "endloop\nendfacet\n";
+  }
+  return text + "end solid soup\n";
+}
+
+TEST_F(MeshCommands, corners_that_differ_by_rounding_are_welded_and_named) {
+  const std::string file = write("rounded.stl", octahedron_soup(3e-8));
+  const Outcome checked = palpate({"check", file});
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_NE(checked.out.find("components: 1 (1 closed)"), std::string::npos) << checked.out;
+  EXPECT_NE(checked.out.find("welded: 18 corners that differed by rounding, largest gap "),
+            std::string::npos)
+      << checked.out;
+  EXPECT_NE(palpate({"check", file, "--json"}).out.find("\"largest_gap_m\""), std::string::npos);
+  EXPECT_EQ(palpate({"check", file, "--repair", out(".ply"), "--quiet"}).status, 0);
+  const Outcome again = palpate({"check", out(".ply")});
+  EXPECT_NE(again.out.find("8 triangles, 6 vertices"), std::string::npos) << again.out;
+  const Outcome baked = palpate({"bake", file, "-o", out(".palp")});
+  EXPECT_EQ(baked.status, 0) << baked.err;
+  EXPECT_NE(baked.out.find("welded: 18 corners"), std::string::npos) << baked.out;
+}
+
+TEST_F(MeshCommands, soup_with_wider_cracks_is_refused_with_and_without_repair) {
+  for (const double off : {1e-6, 1e-4}) {
+    const std::string file = write("soup.stl", octahedron_soup(off));
+    const std::string said = "corners nearly coincide (largest gap ";
+    expect_refused(palpate({"check", file}), 3, said);
+    expect_refused(palpate({"check", file, "--repair", out(".ply")}), 3, said);
+    expect_refused(palpate({"bake", file, "-o", out(".palp"), "--quiet"}), 3, said);
+    const Outcome o = palpate({"bake", file, "-o", out(".palp"), "--repair", "--quiet"});
+    expect_refused(o, 3, said);
+    EXPECT_NE(o.err.find(": weld them"), std::string::npos) << o.err;
+  }
 }
 
 TEST_F(MeshCommands, strict_refuses_faces_that_cross) {

@@ -2,6 +2,7 @@
 // Whatever the bytes, read_mesh() refuses them or gives a mesh that everything after it can take.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -16,16 +17,43 @@ struct Sample {
   std::string name, bytes, extension;
 };
 
+/// Lines end in carriage returns alone, the solid in "end solid".
+std::string to_stl_ascii_of_two_words(const Mesh& mesh) {
+  std::string text = to_stl_ascii(mesh);
+  text.insert(text.rfind("endsolid") + 3, " ");
+  std::ranges::replace(text, '\n', '\r');
+  return text;
+}
+
+/// Corners of its own for each face, some a unit of float away from others.
+Mesh rounded_apart(const Mesh& mesh) {
+  Mesh soup;
+  for (const Face& face : mesh.faces) {
+    const auto first = static_cast<std::uint32_t>(soup.points.size());
+    for (const std::uint32_t v : face) {
+      soup.points.push_back(mesh.points[v]);
+      for (double& x : soup.points.back()) {
+        if (soup.faces.size() % 2 == 0) x += 0x1p-24;
+      }
+    }
+    soup.faces.push_back({first, first + 1, first + 2});
+  }
+  return soup;
+}
+
 std::vector<Sample> samples() {
   const Mesh mesh = cube();
   return {{"obj", to_obj(mesh), ".obj"},
           {"off", to_off(mesh), ".off"},
           {"off_binary", to_off_binary(mesh), ".off"},
           {"stl_ascii", to_stl_ascii(mesh), ".stl"},
+          {"stl_carriage_returns", to_stl_ascii_of_two_words(mesh), ".stl"},
           {"stl_binary", to_stl_binary(mesh), ".stl"},
           {"ply_ascii", to_ply_ascii(mesh), ".ply"},
           {"ply_little", to_ply_binary(mesh, std::endian::little), ".ply"},
-          {"ply_big", to_ply_binary(mesh, std::endian::big), ".ply"}};
+          {"ply_carriage_returns", to_ply_binary(mesh, std::endian::little, "\r"), ".ply"},
+          {"ply_big", to_ply_binary(mesh, std::endian::big), ".ply"},
+          {"stl_soup", to_stl_binary(rounded_apart(mesh)), ".stl"}};
 }
 
 /// False where the bytes are refused.

@@ -39,6 +39,7 @@ struct Options {
 
 struct Baked {
   std::vector<std::byte> bytes;
+  bake::Welded welded;
   std::vector<std::string> repairs;
   bake::BakeReport report;
 };
@@ -61,6 +62,7 @@ Baked bake_file(const Options& options) {
   const bake::Progress progress = cli::progress(options.quiet);
   progress("read", 0);
   bake::ReadMesh read = bake::read_mesh(options.mesh, options.unit_scale);
+  out.welded = read.welded;
   std::string checked = options.mesh;
   if (options.repair) {
     progress("repair", 0);
@@ -93,12 +95,16 @@ std::string report_text(const Baked& baked, const ImageView& image) {
   json["peak_bytes"] = baked.report.peak_bytes;
   json["threads"] = baked.report.threads;
   json["rejected"] = baked.report.rejected;
+  json["welded_corners"] = baked.welded.corners;
+  json["welded_largest_gap_m"] = baked.welded.largest_gap_m;
+  json["welded_collapsed_triangles"] = baked.welded.collapsed_triangles;
   json["repairs"] = baked.repairs;
   json["mesh_triangles"] = baked.report.mesh_triangles;
   return json.dump(2) + "\n";
 }
 
 void print(const Options& options, const Baked& baked, const ImageView& image) {
+  if (baked.welded.corners > 0) std::cout << "welded: " << describe(baked.welded) << "\n";
   for (const std::string& line : baked.repairs) std::cout << "repair: " << line << "\n";
   const std::size_t before = baked.report.mesh_triangles;
   if (before != image.header->source_triangles) {

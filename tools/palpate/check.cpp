@@ -52,11 +52,13 @@ std::string extent(const bake::Mesh& mesh) {
   return text;
 }
 
-void print(const bake::Mesh& mesh, const bake::CheckReport& report, const std::string& file) {
+void print(const bake::Mesh& mesh, const bake::Welded& welded, const bake::CheckReport& report,
+           const std::string& file) {
   std::cout << file << "\n  " << report.faces << " triangles, " << report.vertices << " vertices, "
             << extent(mesh) << "\n  components: " << report.components << " ("
             << report.closed_components << " closed), boundary edges: " << report.boundary_edges
             << ", self-intersecting pairs: " << report.crossings << "\n";
+  if (welded.corners > 0) std::cout << "  welded: " << describe(welded) << "\n";
   for (const bake::Finding& finding : report.findings) {
     std::cout << "  " << name_of(finding.severity) << ": " << bake::describe(finding) << "\n      "
               << finding.mend << "\n";
@@ -72,6 +74,7 @@ nlohmann::json to_json(const bake::CheckReport& report) {
                         {"count", finding.count},
                         {"first_m", finding.first},
                         {"mend", finding.mend}});
+    if (finding.largest_gap_m > 0) findings.back()["largest_gap_m"] = finding.largest_gap_m;
   }
   return {{"bakeable", report.bakeable()},
           {"triangles", report.faces},
@@ -81,6 +84,12 @@ nlohmann::json to_json(const bake::CheckReport& report) {
           {"boundary_edges", report.boundary_edges},
           {"self_intersections", report.crossings},
           {"findings", findings}};
+}
+
+nlohmann::json to_json(const bake::Welded& welded) {
+  return {{"corners", welded.corners},
+          {"largest_gap_m", welded.largest_gap_m},
+          {"collapsed_triangles", welded.collapsed_triangles}};
 }
 
 void print(const bake::RepairReport& repaired) {
@@ -93,12 +102,14 @@ void check(const CheckOptions& options) {
   const bool text = !options.json && !options.quiet;
   const bake::Progress progress = cli::progress(options.quiet);
   progress("read", 0);
-  bake::Mesh mesh = bake::read_mesh(options.mesh, options.unit_scale).mesh;
+  bake::ReadMesh read = bake::read_mesh(options.mesh, options.unit_scale);
+  bake::Mesh& mesh = read.mesh;
   progress("check", 0);
   bake::CheckReport report = bake::check(mesh);
   nlohmann::json json = to_json(report);
   json["file"] = options.mesh;
-  if (text) print(mesh, report, options.mesh);
+  json["welded"] = to_json(read.welded);
+  if (text) print(mesh, read.welded, report, options.mesh);
 
   std::string checked = options.mesh;
   if (!options.repaired.empty()) {
@@ -108,7 +119,7 @@ void check(const CheckOptions& options) {
     json["repair"] = {{"done", repaired.done}, {"result", to_json(report)}};
     checked += " after repair";
     if (text) print(repaired);
-    if (text) print(mesh, report, checked);
+    if (text) print(mesh, {}, report, checked);
   }
   if (options.json) std::cout << json.dump(2) << "\n";
   bake::require_bakeable(report, checked, false);
