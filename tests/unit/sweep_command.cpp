@@ -141,6 +141,18 @@ TEST_F(Sweep, Advice_fits_the_budget_and_its_scene_replays) {
   EXPECT_EQ(replay.status, 0) << replay.err;
 }
 
+TEST_F(Sweep, Scene_and_folder_of_the_current_folder_are_enough) {
+  const test::Outcome outcome =
+      test::run_in(folder_.path(), {PALPATE_EXECUTABLE, "sweep", "scene.toml", "--poses",
+                                    "poses.csv", "-o", "out/", "--engine", "levels", "--s0", "0.01",
+                                    "--recommend", "--budget-us", "1e6", "--quiet"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const test::Outcome replay =
+      test::run_in(folder_.path(), {PALPATE_EXECUTABLE, "replay", "out/recommended.toml", "--poses",
+                                    "poses.csv", "-o", "ticks.csv", "--quiet"});
+  EXPECT_EQ(replay.status, 0) << replay.err;
+}
+
 TEST_F(Sweep, Advice_that_nothing_fits_exits_1) {
   const test::Outcome outcome =
       sweep({"--s0", "0.01", "--recommend", "--budget-us", "0", "--quiet"});

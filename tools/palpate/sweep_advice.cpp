@@ -36,10 +36,12 @@ void put_setting(const SweepSetting& s, double budget_us, toml::table& engine) {
   if (std::isfinite(s.kappa)) engine.insert_or_assign("kappa", s.kappa);
 }
 
+/// @param from  the scene's file, which its images are relative to  @param to  a folder
 void move_images(toml::table& scene, const fs::path& from, const fs::path& to) {
+  const fs::path home = fs::absolute(from).parent_path();
   for (toml::node& body : *scene["body"].as_array()) {
     toml::table& keys = *body.as_table();
-    const fs::path image = fs::absolute(from) / keys["image"].value_or(std::string());
+    const fs::path image = home / keys["image"].value_or(std::string());
     keys.insert_or_assign("image", fs::proximate(image, fs::absolute(to)).string());
   }
 }
@@ -80,7 +82,7 @@ std::string scene_text(const fs::path& scene, const fs::path& folder, const Swee
   try {
     toml::table keys = toml::parse_file(scene.string());
     put_setting(setting, budget_us, table(keys, "engine"));
-    move_images(keys, scene.parent_path(), folder);
+    move_images(keys, scene, folder);
     std::ostringstream out;
     out << keys << "\n";
     return out.str();
