@@ -8,6 +8,7 @@
 
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/motion_placing.hpp"
+#include "tools/palpate/output_file.hpp"
 #include "tools/palpate/poses.hpp"
 
 namespace palpate::cli {
@@ -69,6 +70,7 @@ std::string row_of(std::size_t tick, const std::string& body, const Pose& pose) 
 void make_motion(const MakeMotionOptions& options) {
   const Motion& motion = motion_named(options.name);
   const config::Scene scene = config::load_scene(options.scene);
+  require_writable(options.poses);
   const bake::Progress show = progress(options.quiet);
   MotionPlacing placing(scene);
   std::string text = std::string(kPosesHeader) + "\n";

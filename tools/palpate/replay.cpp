@@ -133,6 +133,7 @@ class ContactTable {
 void run(const ReplayArguments& a) {
   const config::Scene scene = load(a);
   const PoseTrack track = read_poses(a.poses, scene);
+  require_writable(a.ticks);
   const bake::Progress show = progress(a.quiet);
   ContactTable contacts(a.contacts);
   ReplayListeners listeners;
