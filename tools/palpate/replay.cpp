@@ -152,6 +152,9 @@ void run(const ReplayArguments& a) {
   OutputFile ticks_file(a.ticks, std::as_bytes(std::span(ticks)));
   contacts.commit();  // both files or none
   ticks_file.commit();
+  if (!a.quiet && !recording.start_overlap.empty()) {
+    std::fprintf(stderr, "Note: %s.\n", recording.start_overlap.c_str());
+  }
   const Summary summary = summarise(recording.ticks);
   if (a.json) {
     print_json(recording, summary, a.options.profile);
