@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `palpate new-scene` as a user meets them: two small meshes.
+// `palpate new-scene` and `palpate try` as a user meets them: two small meshes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -172,6 +172,32 @@ TEST_F(NewScene, Refused_mesh_leaves_nothing_behind) {
   EXPECT_EQ(folder_.files(), before);
   EXPECT_EQ(palpate({"new-scene", "stamp.off", "plate.off", "-o", "no/scene.toml"}).status, 1);
   EXPECT_EQ(folder_.files(), before);
+}
+
+TEST_F(NewScene, Try_leaves_a_folder_with_all_of_it) {
+  const test::Outcome outcome =
+      palpate({"try", "stamp.off", "plate.off", "-o", "tried", "--seconds", "1", "--no-browser"});
+  ASSERT_TRUE(outcome.status == 0 || outcome.status == 5) << outcome.err;
+  for (const char* name : {"scene.toml", "stamp.palp", "plate.palp", "motion.csv", "run.trace"}) {
+    EXPECT_TRUE(fs::exists(folder_.path() / "tried" / name)) << name;
+  }
+  EXPECT_NE(outcome.out.find("$ palpate run tried/scene.toml --poses tried/motion.csv"),
+            std::string::npos)
+      << outcome.out;
+  if (outcome.err.find("no report") != std::string::npos) GTEST_SKIP() << "no page: no node";
+  EXPECT_NE(outcome.out.find("\nReport: "), std::string::npos) << outcome.out;
+  EXPECT_GT(fs::file_size(folder_.path() / "tried/report.html"), 10000u);
+}
+
+TEST_F(NewScene, Motion_of_try_touches) {
+  palpate({"try", "stamp.off", "plate.off", "-o", "tried", "--seconds", "1", "--no-browser"});
+  const test::Outcome outcome = palpate(
+      {"replay", "tried/scene.toml", "--poses", "tried/motion.csv", "-o", "ticks.csv", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["ticks"], 101);
+  EXPECT_GT(json["force_N"]["max"], 0.05);
+  EXPECT_EQ(outcome.err.find("overlap"), std::string::npos);
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ constexpr std::initializer_list<void (*)(CLI::App&)> kCommands = {
     add_check,
     add_bake,
     add_new_scene,
+    add_try,
     add_inspect,
     add_emit,
     add_replay,

@@ -257,7 +257,8 @@ void new_scene(const NewSceneOptions& options, bool quiet) {
   }
   if (quiet) return;
   for (const std::string& line : made.said) std::cout << line << "\n";
-  std::cout << "Next: palpate run " << options.scene.string() << "\n";
+  std::cout << "Next: palpate run " << options.scene.string()
+            << " --poses MOTION.csv; palpate try makes a motion too\n";
 }
 
 }  // namespace
