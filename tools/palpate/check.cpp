@@ -11,6 +11,7 @@
 
 #include "host_bake/mesh/read.hpp"
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/file_format.hpp"
 #include "tools/palpate/mesh_size.hpp"
 
 namespace palpate::cli {
@@ -108,8 +109,10 @@ void add_check(CLI::App& app) {
       "check", "Say whether a mesh can be baked, what is wrong with it, and where");
   const auto options = std::make_shared<CheckOptions>();
   command->add_option("mesh", options->mesh, "OBJ, PLY, STL or OFF file")->required();
-  command->add_option("--repair", options->repaired,
-                      "Write what a safe repair makes of it (PLY, in metres)");
+  command
+      ->add_option("--repair", options->repaired,
+                   "Write what a safe repair makes of it (PLY, in metres)")
+      ->check(named_as(".ply"));
   command->add_option("--unit-scale", options->unit_scale, "Metres of one unit of the file")
       ->check(number_between(1e-15, 1e15))
       ->capture_default_str();
