@@ -4,10 +4,13 @@
 #include <toml++/toml.h>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
+#include <string>
+#include <system_error>
 #include <tuple>
 
+#include "config/text_file.hpp"
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/scene_edit.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -65,8 +68,8 @@ std::string advice(const SweepRow& row, double budget_us) {
   const SweepFigures& f = row.figures;
   char text[640];
   std::snprintf(text, sizeof text,
-                "Within %g us on this machine: %s\n"
-                "  costs  median %.1f us, p99 %.1f us, p99.9 %.1f us, longest %.1f us over %zu "
+                "Within %g µs on this machine: %s\n"
+                "  costs  median %.1f µs, p99 %.1f µs, p99.9 %.1f µs, longest %.1f µs over %zu "
                 "ticks\n"
                 "  loses  force error %.3g %% (NRMSE), torque error %.3g %%; a hand could notice "
                 "it in %.3g %% of the ticks\n"
@@ -80,12 +83,15 @@ std::string advice(const SweepRow& row, double budget_us) {
 std::string scene_text(const fs::path& scene, const fs::path& folder, const SweepSetting& setting,
                        double budget_us) {
   try {
-    toml::table keys = toml::parse_file(scene.string());
+    std::string text;
+    if (const std::error_code error = config::read_text(scene, text)) {
+      throw Failure(kRefused, "cannot read the scene (" + error.message() + ")", scene.string(),
+                    "leave it in place during a sweep");
+    }
+    toml::table keys = toml::parse(text);
     put_setting(setting, budget_us, table(keys, "engine"));
     move_images(keys, scene, folder);
-    std::ostringstream out;
-    out << keys << "\n";
-    return out.str();
+    return edited_scene(text, keys);
   } catch (const toml::parse_error& e) {
     throw Failure(kUsage, std::string("the scene has changed: ") + e.what(), scene.string(),
                   "let nobody write to it during a sweep");
