@@ -124,7 +124,7 @@ TEST_F(Run, rate_of_the_command_line_overrides_the_scenes) {
 TEST_F(Run, trace_holds_a_record_for_each_tick) {
   const auto file = folder_.path() / "run.trace";
   const json j =
-      json::parse(run({"--seconds", "0.5", "--json", "--quiet", "-o", file.string()}).out);
+      json::parse(run({"--seconds", "0.5", "--json", "--quiet", "--output", file.string()}).out);
   const std::string trace = test::read_file(file);
   ASSERT_GT(trace.size(), 64u);
   EXPECT_EQ(trace.substr(0, 8), "PALTRACE");

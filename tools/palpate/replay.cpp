@@ -87,7 +87,7 @@ void print_json(const Recording& recording, const Summary& s, bool profile) {
 
 void print_text(const Recording& recording, const Summary& s) {
   std::printf(
-      "%zu ticks: median %.1f us, p99 %.1f us, max %.1f us; %.1f contacts and %.3g N on average; "
+      "%zu ticks: median %.1f µs, p99 %.1f µs, max %.1f µs; %.1f contacts and %.3g N on average; "
       "%zu truncated, %zu undecided\n",
       recording.ticks.size(), double(s.p50_ns) * 1e-3, double(s.p99_ns) * 1e-3,
       double(s.max_ns) * 1e-3, s.contacts_mean, s.force_mean_N, s.truncated, s.undecided);
@@ -168,7 +168,7 @@ void run(const ReplayArguments& a) {
 
 void add_budget(CLI::App& command, ReplayArguments& a) {
   CLI::Option* time =
-      command.add_option("--budget-us", a.budget_us, "stop refining a tick after this time (us)");
+      command.add_option("--budget-us", a.budget_us, "stop refining a tick after this time (µs)");
   CLI::Option* units =
       command.add_option("--budget-units", a.options.budget_units,
                          "stop refining a tick after this many convex-pair queries: repeatable");
@@ -176,7 +176,7 @@ void add_budget(CLI::App& command, ReplayArguments& a) {
   units->check(number_between(0, 1e18));
   CLI::Option* more_time =
       command.add_option("--reserve-us", a.reserve_us,
-                         "so much longer (us) for a tick that feels nothing and cannot rule out a "
+                         "so much longer (µs) for a tick that feels nothing and cannot rule out a "
                          "contact, until it can (regions engine)");
   CLI::Option* more_units =
       command.add_option("--reserve-units", a.options.reserve_units,

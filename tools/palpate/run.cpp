@@ -283,7 +283,7 @@ void add_run(CLI::App& app) {
   command->add_option("--poses", options->poses,
                       "motion of the mock hand (POSES.csv), in place of the scene's [[mock.path]]; "
                       "it starts over where --seconds is longer");
-  command->add_option("-o", options->trace, "write a record of each tick to this file");
+  command->add_option("-o,--output", options->trace, "write a record of each tick to this file");
   command
       ->add_option("--priority", options->realtime.fifo_priority,
                    "SCHED_FIFO priority of the loop; 0: an ordinary thread")

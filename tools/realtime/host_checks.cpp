@@ -70,7 +70,7 @@ HostCheck realtime_throttling(const fs::path& root) {
   const std::string found =
       first_line(root / "proc/sys/kernel/sched_rt_runtime_us").value_or("unknown");
   return make("realtime_throttling", found == "-1" || found == "950000" || found == "1000000",
-              found + " us of each second for real-time threads", "-1 (no bound) or 950000",
+              found + " µs of each second for real-time threads", "-1 (no bound) or 950000",
               "sudo sysctl -w kernel.sched_rt_runtime_us=950000");
 }
 
