@@ -1,4 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+if(TARGET report_bundle)
+  add_test(NAME report_units COMMAND "${PALPATE_NODE}" "${PROJECT_SOURCE_DIR}/tests/browser/units.mjs")
+  set_tests_properties(report_units PROPERTIES LABELS unit)
+endif()
+
 # Not in the regular suite: Chromium takes two minutes to install on a bare machine.
 find_program(PALPATE_CHROMIUM NAMES chromium chromium-browser google-chrome DOC "Shows reports to their test")
 if(TARGET report_bundle AND PALPATE_CHROMIUM)

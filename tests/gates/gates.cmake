@@ -19,10 +19,10 @@ if(NOT PALPATE_SANITIZE AND NOT PALPATE_COVERAGE)
   set_tests_properties(engine.bits_everywhere PROPERTIES LABELS long TIMEOUT 3600)
 endif()
 
-# find_package(Palpate) from an installed copy, as firmware and closed hosts use it.
+# An installed copy, as firmware, hosts in C and C++, and people use it.
 if(PALPATE_HOST AND NOT PALPATE_SANITIZE AND NOT PALPATE_COVERAGE AND NOT PALPATE_FUZZ)
   add_test(NAME install.find_package
-    COMMAND "${CMAKE_CURRENT_SOURCE_DIR}/gates/install" "${CMAKE_COMMAND}" "${PROJECT_BINARY_DIR}")
+    COMMAND "${CMAKE_CURRENT_SOURCE_DIR}/gates/install" "${CMAKE_COMMAND}" "${PROJECT_BINARY_DIR}" "${CMAKE_NM}")
 endif()
 get_property(gates DIRECTORY PROPERTY TESTS)
 foreach(gate rt_core.symbols rt_core.stack install.find_package)

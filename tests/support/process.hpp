@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "temporary_folder.hpp"
@@ -50,6 +51,12 @@ inline Outcome run(std::vector<std::string> command, const std::filesystem::path
   if (out.empty()) outcome.out = read_file(out_file);
   outcome.err = read_file(err_file);
   return outcome;
+}
+
+/// The same with another current folder.
+inline Outcome run_in(const std::filesystem::path& folder, std::vector<std::string> command) {
+  command.insert(command.begin(), {"/usr/bin/env", "--chdir=" + folder.string()});
+  return run(std::move(command));
 }
 
 }  // namespace palpate::test

@@ -61,6 +61,19 @@ TEST(BakeCommand, Image_and_report_agree) {
   EXPECT_TRUE(json["rejected"].is_object());
 }
 
+TEST(BakeCommand, Mesh_of_many_metres_is_asked_about) {
+  const test::TemporaryFolder folder;
+  const std::string mesh = folder.write("p.off", kPyramid), image = folder.path() / "p.palp";
+  const std::string question = "20 m across: millimetres? --unit-scale 0.001\n";
+  EXPECT_NE(bake({mesh, "-o", image}).err.find("p.off: " + question), std::string::npos);
+  EXPECT_EQ(bake({mesh, "-o", image, "--unit-scale", "1"}).err.find("millimetres"),
+            std::string::npos);
+  const std::string small = folder.write("s.off",
+                                         "OFF\n4 4 0\n0 0 0\n9 0 0\n0 9 0\n0 0 9\n3 0 2 1\n"
+                                         "3 0 1 3\n3 1 2 3\n3 2 0 3\n");
+  EXPECT_EQ(bake({small, "-o", image}).err.find("millimetres"), std::string::npos);
+}
+
 TEST(BakeCommand, Same_mesh_same_bytes) {
   const test::TemporaryFolder folder;
   const std::string mesh = folder.write("p.off", kPyramid), a = folder.path() / "a",

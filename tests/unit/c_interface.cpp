@@ -333,8 +333,16 @@ TEST(CInterface, refuses_what_it_is_not_given) {
   EXPECT_EQ(palpate_get_contact(nullptr, 0, nullptr), PALPATE_BAD_ARGUMENT);
 }
 
+std::string file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 TEST(CInterface, loop_on_the_page_runs) {
-  const AlignedBytes a = ball(), b = block();
+  const std::string image = file(PALPATE_TEST_DATA "/bumpy_ball_regions.bin");
+  AlignedBytes a(image.size());
+  std::memcpy(a.data(), image.data(), image.size());
+  const AlignedBytes& b = a;
   g_pushed.clear();
   g_tick = 0;
   EXPECT_EQ(run(a.data(), a.size(), b.data(), b.size()), 0);
@@ -345,11 +353,6 @@ TEST(CInterface, loop_on_the_page_runs) {
 std::string between(const std::string& text, const std::string& from, const std::string& to) {
   const std::size_t start = text.find(from) + from.size();
   return text.substr(start, text.find(to, start) - start);
-}
-
-std::string file(const std::string& path) {
-  std::ifstream in(path);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 TEST(CInterface, page_shows_the_loop_that_is_tested) {

@@ -70,6 +70,16 @@ TEST_F(OutputFiles, Device_is_written_in_place) {
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }
 
+TEST_F(OutputFiles, Place_is_tried_before_the_work_and_left_as_it_was) {
+  folder_.write("x", "old");
+  require_writable(at("x"));
+  require_writable(at("y"));
+  EXPECT_EQ(test::read_file(at("x")), "old");
+  EXPECT_EQ(folder_.files(), 1u);
+  EXPECT_THROW(require_writable(at("no/folder")), Failure);
+  EXPECT_THROW(require_writable(folder_.path()), Failure);
+}
+
 TEST_F(OutputFiles, Longest_name_is_written) {
   const std::string name(255, 'n');
   write_file(at(name), "text");

@@ -75,6 +75,14 @@ class Replay : public ::testing::Test {
   test::TemporaryFolder folder_;
 };
 
+TEST_F(Replay, Bodies_that_overlap_in_the_first_tick_are_named) {
+  EXPECT_EQ(replay().err.find("overlap"), std::string::npos);
+  folder_.write("poses.csv", test::cube_poses(kTicks, -0.0004));
+  EXPECT_NE(replay().err.find("'tool' and 'wall' overlap at the start, by 0.0004 m"),
+            std::string::npos);
+  EXPECT_EQ(replay({"--quiet"}).err, "");
+}
+
 TEST_F(Replay, Cubes_approaching_give_distance_and_force) {
   const test::Outcome outcome = replay({"--contacts", at("contacts.csv")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;

@@ -88,6 +88,19 @@ TEST_F(MeshCommands, repair_writes_a_mesh_that_bakes) {
   EXPECT_EQ(palpate({"inspect", out(".palp"), "--verify"}).status, 0);
 }
 
+TEST_F(MeshCommands, names_of_formats_that_are_not_written_are_refused) {
+  const std::string file = write("ball.ply", ball(6, 8, 1));
+  const std::size_t before = folder_.files();
+  for (const char* name : {"out.stl", "out.OBJ", "out.png"}) {
+    const std::string out = folder_.path() / name;
+    expect_refused(palpate({"check", file, "--repair", out}), 2, "another format");
+    expect_refused(palpate({"make-model", "ellipsoid", "-o", out}), 2, "out.ply'");
+  }
+  EXPECT_EQ(folder_.files(), before);
+  EXPECT_EQ(palpate({"check", file, "--repair", folder_.path() / "OUT.PLY"}).status, 0);
+  EXPECT_EQ(palpate({"check", file, "--repair", folder_.path() / "out"}).status, 0);
+}
+
 TEST_F(MeshCommands, bake_with_repair_does_it_in_one_step) {
   Mesh m = ball(6, 8, 1);
   m.faces.push_back(m.faces[3]);

@@ -59,6 +59,11 @@ TEST_F(PictureCommand, No_direction_is_refused) {
   expect_usage_error(inspect({"--from", "1", "2", "3"}), "--picture");
 }
 
+TEST_F(PictureCommand, Name_of_another_format_is_refused) {
+  expect_usage_error(inspect({"--picture", path("out.jpg")}), "another format");
+  EXPECT_FALSE(std::filesystem::exists(path("out.jpg")));
+}
+
 TEST_F(PictureCommand, A_place_that_cannot_be_written_leaves_nothing) {
   const Outcome outcome = inspect(
       {"--export-lod", "0", "-o", path("level.ply"), "--picture", path("no/such/folder.png")});

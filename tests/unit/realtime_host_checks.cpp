@@ -81,6 +81,15 @@ TEST_F(HostChecks, ordinary_host_is_told_what_to_mend) {
   EXPECT_EQ(find("kernel_preemption").found, "PREEMPT_DYNAMIC");
 }
 
+TEST_F(HostChecks, installed_copy_names_the_script_that_lies_with_it) {
+  for (const HostCheck& c : check_host({}, root, "/opt/share/palpate/tools/setup/host")) {
+    EXPECT_EQ(c.mend.find("sudo tools/"), std::string::npos) << c.check;
+    if (c.check == "udev_rule") {
+      EXPECT_EQ(c.mend, "sudo /opt/share/palpate/tools/setup/host");
+    }
+  }
+}
+
 TEST_F(HostChecks, capabilities_stand_in_for_limits) {
   HostRights rights;
   rights.any_priority = true;

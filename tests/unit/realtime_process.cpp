@@ -124,13 +124,62 @@ TEST_F(Run, rate_of_the_command_line_overrides_the_scenes) {
 TEST_F(Run, trace_holds_a_record_for_each_tick) {
   const auto file = folder_.path() / "run.trace";
   const json j =
-      json::parse(run({"--seconds", "0.5", "--json", "--quiet", "-o", file.string()}).out);
+      json::parse(run({"--seconds", "0.5", "--json", "--quiet", "--output", file.string()}).out);
   const std::string trace = test::read_file(file);
   ASSERT_GT(trace.size(), 64u);
   EXPECT_EQ(trace.substr(0, 8), "PALTRACE");
   std::uint64_t records = 0;
   std::memcpy(&records, trace.data() + 24, sizeof records);
   EXPECT_EQ(records, j["ticks"].get<std::uint64_t>() - j["telemetry_dropped"].get<std::uint64_t>());
+}
+
+TEST_F(Run, recorded_motion_moves_the_mock_hand_once) {
+  folder_.write("scene.toml", test::cube_loop_scene());
+  // Half a second down, 1.2 mm, which presses by more than the delta.
+  std::string poses = "t,body,px,py,pz,qw,qx,qy,qz\n7,tool,0.0106,0,0,1,0,0,0\n";
+  poses += "7.3,tool,0.0094,0,0,1,0,0,0\n7.5,tool,0.0094,0,0,1,0,0,0\n";
+  const std::string file = folder_.write("poses.csv", poses);
+  const test::Outcome outcome = run({"--poses", file, "--json"});
+  ASSERT_TRUE(outcome.status != 2 && outcome.status != 3) << outcome.err;
+  EXPECT_EQ(outcome.err.find("stands still"), std::string::npos) << outcome.err;
+  const json j = json::parse(outcome.out);
+  EXPECT_EQ(j["ticks"].get<int>() + j["missed"].get<int>(), 500);
+  if (!j["faults"].empty()) GTEST_SKIP() << "the machine is too busy to hold the loop up";
+  EXPECT_GT(j["force_N"]["max"].get<double>(), 0.01);
+}
+
+TEST_F(Run, motion_that_the_hand_cannot_make_is_refused) {
+  const std::string file =
+      folder_.write("poses.csv", "t,body,px,py,pz,qw,qx,qy,qz\n0,tool,0.0106,0,0,1,0,0,0\n");
+  const test::Outcome device = run({"--poses", file, "--device", "usb"});
+  EXPECT_EQ(device.status, 2);
+  EXPECT_NE(device.err.find("only the mock hand plays a motion"), std::string::npos) << device.err;
+  std::string scene = test::cube_loop_scene();
+  scene.replace(scene.find("\"fixed\""), 7, "\"moved\"");
+  folder_.write("scene.toml", scene);
+  folder_.write("poses.csv", "t,body,px,py,pz,qw,qx,qy,qz\n0,base,0,0,0,1,0,0,0\n");
+  const test::Outcome other = run({"--poses", file});
+  EXPECT_EQ(other.status, 3);
+  EXPECT_NE(other.err.find("the poses move 'base'"), std::string::npos) << other.err;
+  EXPECT_EQ(run({"--poses", "/no/such/file"}).status, 3);
+}
+
+TEST_F(Run, hand_that_stands_still_is_said_in_one_line) {
+  folder_.write("scene.toml", test::cube_loop_scene());
+  const test::Outcome still = run({"--seconds", "0.1"});
+  EXPECT_NE(still.err.find("The mock hand stands still: --poses FILE"), std::string::npos);
+  EXPECT_EQ(run({"--seconds", "0.1", "--quiet"}).err, "");
+}
+
+TEST_F(Run, bodies_that_overlap_at_the_start_are_named) {
+  EXPECT_EQ(run({"--seconds", "0.1"}).err.find("overlap"), std::string::npos);
+  std::string scene = test::cube_loop_scene();
+  scene.replace(scene.find("0.0102"), 6, "0.0097");
+  folder_.write("scene.toml", scene);
+  const test::Outcome outcome = run({"--seconds", "0.1"});
+  EXPECT_NE(outcome.err.find("'tool' and 'base' overlap at the start, by 0.0003 m"),
+            std::string::npos)
+      << outcome.err;
 }
 
 TEST_F(Run, device_that_is_not_there_is_a_device_error) {

@@ -47,7 +47,7 @@ TEST_F(ReportSweep, words_name_what_is_set_and_nothing_else) {
   EXPECT_EQ(points[0].words, "exact, delta 0.5 mm");
   EXPECT_EQ(points[1].words, "exact, paper's bounds, delta 0.5 mm");
   EXPECT_EQ(points[3].words, "s0 0.5 %, delta 0.5 mm");
-  EXPECT_EQ(points.back().words, "force tolerance 0.02 N, budget 100 us, delta 0.5 mm");
+  EXPECT_EQ(points.back().words, "force tolerance 0.02 N, budget 100 µs, delta 0.5 mm");
 }
 
 TEST_F(ReportSweep, keys_beyond_the_contract_may_be_absent) {

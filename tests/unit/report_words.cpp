@@ -33,11 +33,16 @@ void expect_said(const std::string& text, const std::string& words) {
 
 TEST(Words, figures_have_the_unit_that_fits) {
   EXPECT_EQ(duration(812), "812 ns");
-  EXPECT_EQ(duration(15'140), "15.1 us");
+  EXPECT_EQ(duration(15'140), "15.1 µs");
   EXPECT_EQ(duration(13'420'000), "13.42 ms");
   EXPECT_EQ(grouped(12), "12");
   EXPECT_EQ(grouped(1234567), "1,234,567");
   EXPECT_EQ(count_of(1, "tick", "ticks"), "1 tick");
+}
+
+TEST(Words, are_aligned_by_letters_not_by_bytes) {
+  EXPECT_EQ(right_aligned("15.1 µs", 9), "  15.1 µs");
+  EXPECT_EQ(right_aligned("812 ns", 3), "812 ns");
 }
 
 TEST(ReportWords, sweep_names_the_fastest_setting_within_each_error) {
@@ -48,7 +53,7 @@ TEST(ReportWords, sweep_names_the_fastest_setting_within_each_error) {
   expect_said(text, "11 settings on the same motion; 4 of them are best trades");
   expect_said(text, "levels (exact, paper's bounds, delta 0.5 mm) takes 4.20 ms at the median");
   expect_said(text, "within 1 %: regions (force tolerance 0.005 N, delta 0.5 mm), error 0.4 %");
-  expect_said(text, "within 5 %: regions (force tolerance 0.02 N, budget 100 us");
+  expect_said(text, "within 5 %: regions (force tolerance 0.02 N, budget 100 µs");
   expect_said(text, "158 times as fast as the paper's exact query");
   expect_said(text, "No certificate was broken.");
 }
@@ -71,7 +76,7 @@ TEST(ReportWords, replay_says_times_touch_and_certificate) {
   for (TickRow& row : input.lines[1].ticks) row.min_distance_m += 1e-5;
   const std::string text = joined(input);
   expect_said(text, "4 ticks replayed, 2 tables.");
-  expect_said(text, "fast: a tick took 2.0 us at the median, 4.0 us at p99");
+  expect_said(text, "fast: a tick took 2.0 µs at the median, 4.0 µs at p99");
   expect_said(text, "in contact in 25 % of the ticks; force 0.15 N on average, 0.3 N at most");
   expect_said(text, "The budget cut 1 tick short (25 %).");
   expect_said(text, "within 0.02 mm of the truth at the median");
@@ -102,7 +107,7 @@ TEST(ReportWords, run_says_what_was_missed_and_why_it_stopped) {
   input.run->faults = 1u << 2;
   const std::string text = joined(input);
   expect_said(text, "4 ticks at 1000 Hz, 0.003 s; 1 period was missed, 0 ticks left no record.");
-  expect_said(text, "2.0 us late at the median");
+  expect_said(text, "2.0 µs late at the median");
   expect_said(text, "The device was sent 0.25 N at most. Faults: missed_deadlines.");
 }
 

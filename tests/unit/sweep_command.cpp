@@ -134,10 +134,63 @@ TEST_F(Sweep, Advice_fits_the_budget_and_its_scene_replays) {
   const test::Outcome outcome =
       sweep({"--s0", "0.01", "--recommend", "--budget-us", "1e6", "--quiet"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.out.find("Within 1e+06 us on this machine: levels"), 0u) << outcome.out;
+  EXPECT_EQ(outcome.out.find("Within 1e+06 µs on this machine: levels"), 0u) << outcome.out;
   const test::Outcome replay =
       test::run({PALPATE_EXECUTABLE, "replay", at("out/recommended.toml"), "--poses",
                  at("poses.csv"), "-o", at("ticks.csv"), "--quiet"});
+  EXPECT_EQ(replay.status, 0) << replay.err;
+}
+
+TEST_F(Sweep, Recommended_scene_keeps_comments_and_numbers) {
+  folder_.write("scene.toml",
+                "# ours\n" + test::cube_scene("kappa = 1  # gone\nbudget_us = 400\n# a word\n"));
+  ASSERT_EQ(
+      sweep({"--s0", "0.01", "--kappa", "inf", "--recommend", "--budget-us", "1e6", "--quiet"})
+          .status,
+      0);
+  const std::string scene = test::read_file(at("out/recommended.toml"));
+  EXPECT_EQ(scene.find("# ours\n[engine]\n"), 0u) << scene;
+  EXPECT_NE(scene.find("delta_m = 0.0005\n"), std::string::npos) << scene;
+  EXPECT_NE(scene.find("\n# a word\n"), std::string::npos) << scene;
+  EXPECT_NE(scene.find("image = \"../cube.palp\""), std::string::npos) << scene;
+  EXPECT_EQ(scene.find("kappa"), std::string::npos) << scene;
+  EXPECT_EQ(scene.find("budget_us = 400"), std::string::npos) << scene;
+}
+
+TEST_F(Sweep, Recommended_scene_of_dotted_keys_is_written_anew) {
+  std::string text = test::cube_scene();
+  text.replace(text.find("[engine]\n"), 9, "engine.");
+  folder_.write("scene.toml", text);
+  ASSERT_EQ(sweep({"--s0", "0.01", "--recommend", "--budget-us", "1e6", "--quiet"}).status, 0);
+  const test::Outcome replay =
+      test::run({PALPATE_EXECUTABLE, "replay", at("out/recommended.toml"), "--poses",
+                 at("poses.csv"), "-o", at("ticks.csv"), "--quiet"});
+  EXPECT_EQ(replay.status, 0) << replay.err;
+}
+
+/// Without the levels engine there is no speed-up to tell.
+TEST_F(Sweep, Table_has_no_number_where_there_is_nothing_to_compare_with) {
+  folder_.write("cube.palp", test::read_file(PALPATE_TEST_DATA "/bumpy_ball_regions.bin"));
+  folder_.write("scene.toml", test::cube_scene("engine = \"regions\"\n"));
+  folder_.write("poses.csv",
+                "t,body,px,py,pz,qw,qx,qy,qz\n0,tool,1.95,0,0,1,0,0,0\n1,tool,1.94,0,0,1,0,0,0\n");
+  const test::Outcome outcome =
+      test::run({PALPATE_EXECUTABLE, "sweep", at("scene.toml"), "--poses", at("poses.csv"), "-o",
+                 at("out"), "--engine", "regions"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("median µs"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("nan"), std::string::npos) << outcome.out;
+}
+
+TEST_F(Sweep, Scene_and_folder_of_the_current_folder_are_enough) {
+  const test::Outcome outcome =
+      test::run_in(folder_.path(), {PALPATE_EXECUTABLE, "sweep", "scene.toml", "--poses",
+                                    "poses.csv", "-o", "out/", "--engine", "levels", "--s0", "0.01",
+                                    "--recommend", "--budget-us", "1e6", "--quiet"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const test::Outcome replay =
+      test::run_in(folder_.path(), {PALPATE_EXECUTABLE, "replay", "out/recommended.toml", "--poses",
+                                    "poses.csv", "-o", "ticks.csv", "--quiet"});
   EXPECT_EQ(replay.status, 0) << replay.err;
 }
 

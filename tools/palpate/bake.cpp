@@ -13,12 +13,13 @@
 #include <utility>
 #include <vector>
 
-#include "host_bake/mesh/read.hpp"
 #include "host_bake/pack/aligned.hpp"
 #include "host_bake/simplify/reduce.hpp"
+#include "tools/palpate/bake_mesh.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/image_json.hpp"
 #include "tools/palpate/image_text.hpp"
+#include "tools/palpate/mesh_size.hpp"
 #include "tools/palpate/output_file.hpp"
 
 namespace palpate::cli {
@@ -30,18 +31,10 @@ struct Options {
   std::string report;  ///< empty: none
   std::string engine;  ///< empty: as much as the other options allow
   std::string support = "one-ring";
-  double unit_scale = 1.0;
-  bool repair = false;
-  bool strict = false;
+  std::optional<double> unit_scale;
+  BakeRules rules;
   bool quiet = false;
   bake::BakeOptions bake;
-};
-
-struct Baked {
-  std::vector<std::byte> bytes;
-  bake::Welded welded;
-  std::vector<std::string> repairs;
-  bake::BakeReport report;
 };
 
 /// An image with levels left out serves the levels engine only.
@@ -57,28 +50,24 @@ bake::ForEngine engine_of(const Options& options) {
   return reduced ? bake::ForEngine::levels : bake::ForEngine::both;
 }
 
+/// Nobody who gives a unit is asked about it.
+void warn_of_unit(const Options& options, const bake::Mesh& mesh) {
+  if (options.unit_scale || options.quiet) return;
+  const std::string warning = unit_warning(box_of(mesh));
+  if (warning.empty()) return;
+  std::cerr << "palpate: warning: " << options.mesh << ": " << warning << "\n";
+}
+
 Baked bake_file(const Options& options) {
-  Baked out;
+  require_writable(options.image);
   const bake::Progress progress = cli::progress(options.quiet);
   progress("read", 0);
-  bake::ReadMesh read = bake::read_mesh(options.mesh, options.unit_scale);
-  out.welded = read.welded;
-  std::string checked = options.mesh;
-  if (options.repair) {
-    progress("repair", 0);
-    out.repairs = bake::repair(read.mesh).done;
-    checked += " after repair";
-  }
-  progress("check", 0);
-  const bake::CheckReport check = bake::check(read.mesh);
-  bake::require_bakeable(check, checked, options.strict);
+  bake::ReadMesh read = bake::read_mesh(options.mesh, options.unit_scale.value_or(1));
+  warn_of_unit(options, read.mesh);
   bake::BakeOptions how = options.bake;
   how.engine = engine_of(options);
   if (options.support == "grown") how.support = bake::SupportReading::grown;
-  how.repaired = !out.repairs.empty();
-  how.source_sha256 = read.sha256;
-  out.bytes = bake::bake(read.mesh, check, how, progress, out.report);
-  return out;
+  return bake_mesh(std::move(read), options.mesh, options.rules, how, progress);
 }
 
 ImageView view_of(const bake::AlignedCopy& image) {
@@ -188,11 +177,13 @@ void add_bake(CLI::App& app) {
                    "Contact tolerance that the support areas are made for, relative to the radius")
       ->check(number_between(1e-9, 4))
       ->capture_default_str();
-  command->add_option("--unit-scale", options->unit_scale, "Metres of one unit of the file")
-      ->check(number_between(1e-15, 1e15))
-      ->capture_default_str();
-  command->add_flag("--repair", options->repair, "Mend what a safe repair can, see check");
-  command->add_flag("--strict", options->strict, "Refuse a mesh whose faces cross one another");
+  command
+      ->add_option("--unit-scale", options->unit_scale,
+                   "Metres of one unit of the file; default: 1")
+      ->check(number_between(1e-15, 1e15));
+  command->add_flag("--repair", options->rules.repair, "Mend what a safe repair can, see check");
+  command->add_flag("--strict", options->rules.strict,
+                    "Refuse a mesh whose faces cross one another");
   command
       ->add_option("--support-area", options->support,
                    "Surface that supports a contact (D of eq. 7): the vertex's own faces, or those "

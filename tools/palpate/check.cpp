@@ -3,8 +3,6 @@
 // it.
 #include "host_bake/mesh/check.hpp"
 
-#include <algorithm>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,6 +11,8 @@
 
 #include "host_bake/mesh/read.hpp"
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/file_format.hpp"
+#include "tools/palpate/mesh_size.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -37,25 +37,10 @@ const char* name_of(bake::Severity severity) {
   return "";
 }
 
-/// "0.12 x 0.08 x 0.05 m": wrong units show here first.
-std::string extent(const bake::Mesh& mesh) {
-  bake::Point low = mesh.points.front(), high = low;
-  for (const bake::Point& p : mesh.points) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], p[i]);
-      high[i] = std::max(high[i], p[i]);
-    }
-  }
-  char text[96];
-  std::snprintf(text, sizeof text, "%.4g x %.4g x %.4g m", high[0] - low[0], high[1] - low[1],
-                high[2] - low[2]);
-  return text;
-}
-
 void print(const bake::Mesh& mesh, const bake::Welded& welded, const bake::CheckReport& report,
            const std::string& file) {
   std::cout << file << "\n  " << report.faces << " triangles, " << report.vertices << " vertices, "
-            << extent(mesh) << "\n  components: " << report.components << " ("
+            << sides_text(box_of(mesh)) << " m\n  components: " << report.components << " ("
             << report.closed_components << " closed), boundary edges: " << report.boundary_edges
             << ", self-intersecting pairs: " << report.crossings << "\n";
   if (welded.corners > 0) std::cout << "  welded: " << describe(welded) << "\n";
@@ -135,8 +120,10 @@ void add_check(CLI::App& app) {
       "check", "Say whether a mesh can be baked, what is wrong with it, and where");
   const auto options = std::make_shared<CheckOptions>();
   command->add_option("mesh", options->mesh, "OBJ, PLY, STL or OFF file")->required();
-  command->add_option("--repair", options->repaired,
-                      "Write what a safe repair makes of it (PLY, in metres)");
+  command
+      ->add_option("--repair", options->repaired,
+                   "Write what a safe repair makes of it (PLY, in metres)")
+      ->check(named_as(".ply"));
   command->add_option("--unit-scale", options->unit_scale, "Metres of one unit of the file")
       ->check(number_between(1e-15, 1e15))
       ->capture_default_str();

@@ -58,6 +58,8 @@ void add_make_model(CLI::App& app);
 void add_make_motion(CLI::App& app);
 void add_check(CLI::App& app);
 void add_bake(CLI::App& app);
+void add_new_scene(CLI::App& app);
+void add_try(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_emit(CLI::App& app);
 void add_replay(CLI::App& app);

@@ -25,7 +25,7 @@ nlohmann::json to_json(const realtime::HostCheck& check) {
 }
 
 void doctor(bool json) {
-  const auto checks = realtime::check_host(realtime::host_rights());
+  const auto checks = realtime::check_host(realtime::host_rights(), "/", realtime::set_up_script());
   if (json) {
     nlohmann::json list = nlohmann::json::array();
     for (const auto& check : checks) list.push_back(to_json(check));

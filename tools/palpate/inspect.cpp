@@ -10,6 +10,7 @@
 
 #include "host_bake/bake.hpp"
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/file_format.hpp"
 #include "tools/palpate/image_file.hpp"
 #include "tools/palpate/image_json.hpp"
 #include "tools/palpate/image_text.hpp"
@@ -113,12 +114,15 @@ void add_inspect(CLI::App& app) {
                     "where one fails");
   auto* level = command->add_option("--export-lod", options->level,
                                     "Write this level as a mesh, 0 is the finest");
-  auto* mesh = command->add_option("-o,--output", options->mesh, "PLY file for --export-lod");
+  auto* mesh = command->add_option("-o,--output", options->mesh, "PLY file for --export-lod")
+                   ->check(named_as(".ply"));
   level->needs(mesh);
   mesh->needs(level);
-  auto* picture = command->add_option("--picture", options->picture,
-                                      "Write a PNG picture of the original surface, three "
-                                      "simplified and two free levels");
+  auto* picture = command
+                      ->add_option("--picture", options->picture,
+                                   "Write a PNG picture of the original surface, three "
+                                   "simplified and two free levels")
+                      ->check(named_as(".png"));
   command
       ->add_option("--from", options->from,
                    "Where the picture is seen from, X Y Z in body axes: a direction")

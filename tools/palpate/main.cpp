@@ -27,6 +27,8 @@ constexpr std::initializer_list<void (*)(CLI::App&)> kCommands = {
     add_make_motion,
     add_check,
     add_bake,
+    add_new_scene,
+    add_try,
     add_inspect,
     add_emit,
     add_replay,

@@ -12,6 +12,7 @@
 #include "host_bake/mesh/read.hpp"
 #include "host_bake/models/models.hpp"
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/file_format.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -74,7 +75,9 @@ void add_make_model(CLI::App& app) {
       app.add_subcommand("make-model", "Write a procedural benchmark mesh (binary PLY, metres)");
   const auto options = std::make_shared<MakeModelOptions>();
   command->add_option("name", options->name, "One of the models below")->required();
-  command->add_option("-o,--output", options->mesh, "PLY file to write")->required();
+  command->add_option("-o,--output", options->mesh, "PLY file to write")
+      ->required()
+      ->check(named_as(".ply"));
   // Without this -1 would be read as the largest number there is.
   const CLI::Validator not_negative(
       [](std::string& text) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // palpate make-motion: writes a benchmark motion for a scene.
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <memory>
 #include <string>
 
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/motion_placing.hpp"
+#include "tools/palpate/output_file.hpp"
 #include "tools/palpate/poses.hpp"
 
 namespace palpate::cli {
@@ -50,25 +50,10 @@ const Motion& motion_named(const std::string& name) {
   return *found;
 }
 
-void append(std::string& row, double value) {
-  char text[32];
-  row.push_back(',');
-  row.append(text, std::to_chars(text, text + sizeof text, value).ptr);
-}
-
-std::string row_of(std::size_t tick, const std::string& body, const Pose& pose) {
-  std::string row =
-      std::to_string(tick / 1000) + "." + std::to_string(1000 + tick % 1000).substr(1);
-  row += "," + body;
-  const Vec3d p = pose.position_m;
-  const Quat q = pose.orientation;
-  for (const double value : {p.x, p.y, p.z, q.w, q.x, q.y, q.z}) append(row, value);
-  return row + "\n";
-}
-
 void make_motion(const MakeMotionOptions& options) {
   const Motion& motion = motion_named(options.name);
   const config::Scene scene = config::load_scene(options.scene);
+  require_writable(options.poses);
   const bake::Progress show = progress(options.quiet);
   MotionPlacing placing(scene);
   std::string text = std::string(kPosesHeader) + "\n";
@@ -76,7 +61,7 @@ void make_motion(const MakeMotionOptions& options) {
     if (tick / kStretch % options.one_in != 0) continue;
     const double share = double(tick) / double(options.ticks);
     const Pose pose = placing.place(waymark(motion, share, options.seed), motion.closing);
-    text += row_of(tick, scene.bodies[scene.tool].name, pose);
+    text += pose_row(1e-3 * double(tick), scene.bodies[scene.tool].name, pose);
     show("place", share);
   }
   write_file(options.poses, text);

@@ -95,4 +95,11 @@ void OutputFile::commit() {
   sync_folder(target_.parent_path());
 }
 
+void require_writable(const fs::path& target) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(target, ignored);
+  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) return;
+  const OutputFile probe(target);
+}
+
 }  // namespace palpate::cli

@@ -36,4 +36,8 @@ class OutputFile {
   int file_ = -1;
 };
 
+/// For what takes long: Failure(kOther) at its beginning where the file cannot be written at its
+/// end. Nothing is left behind; pipes and devices are not touched.
+void require_writable(const std::filesystem::path& target);
+
 }  // namespace palpate::cli

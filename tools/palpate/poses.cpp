@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "config/scene_keys.hpp"
@@ -164,6 +165,19 @@ PoseTrack read_poses(const std::filesystem::path& file, const config::Scene& sce
                   "give a pose file that exists and is readable");
   }
   return Reader(file, scene).read(text);
+}
+
+std::string pose_row(double t_s, const std::string& body, const Pose& pose) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", t_s);
+  std::string row = std::string(text) + "," + body;
+  const Vec3d p = pose.position_m;
+  const Quat q = pose.orientation;
+  for (const double value : {p.x, p.y, p.z, q.w, q.x, q.y, q.z}) {
+    row.push_back(',');
+    row.append(text, std::to_chars(text, text + sizeof text, value).ptr);
+  }
+  return row + "\n";
 }
 
 }  // namespace palpate::cli

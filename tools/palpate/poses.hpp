@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -43,5 +44,8 @@ struct PoseTrack {
 /// more than 1e-3 (less is normalised), time running backwards, an unknown or fixed body, a body
 /// twice at one time, no rows.
 PoseTrack read_poses(const std::filesystem::path& file, const config::Scene& scene);
+
+/// One line of a pose file; times in full milliseconds.
+std::string pose_row(double t_s, const std::string& body, const Pose& pose);
 
 }  // namespace palpate::cli

@@ -87,7 +87,7 @@ void print_json(const Recording& recording, const Summary& s, bool profile) {
 
 void print_text(const Recording& recording, const Summary& s) {
   std::printf(
-      "%zu ticks: median %.1f us, p99 %.1f us, max %.1f us; %.1f contacts and %.3g N on average; "
+      "%zu ticks: median %.1f µs, p99 %.1f µs, max %.1f µs; %.1f contacts and %.3g N on average; "
       "%zu truncated, %zu undecided\n",
       recording.ticks.size(), double(s.p50_ns) * 1e-3, double(s.p99_ns) * 1e-3,
       double(s.max_ns) * 1e-3, s.contacts_mean, s.force_mean_N, s.truncated, s.undecided);
@@ -133,6 +133,7 @@ class ContactTable {
 void run(const ReplayArguments& a) {
   const config::Scene scene = load(a);
   const PoseTrack track = read_poses(a.poses, scene);
+  require_writable(a.ticks);
   const bake::Progress show = progress(a.quiet);
   ContactTable contacts(a.contacts);
   ReplayListeners listeners;
@@ -151,6 +152,9 @@ void run(const ReplayArguments& a) {
   OutputFile ticks_file(a.ticks, std::as_bytes(std::span(ticks)));
   contacts.commit();  // both files or none
   ticks_file.commit();
+  if (!a.quiet && !recording.start_overlap.empty()) {
+    std::fprintf(stderr, "Note: %s.\n", recording.start_overlap.c_str());
+  }
   const Summary summary = summarise(recording.ticks);
   if (a.json) {
     print_json(recording, summary, a.options.profile);
@@ -164,7 +168,7 @@ void run(const ReplayArguments& a) {
 
 void add_budget(CLI::App& command, ReplayArguments& a) {
   CLI::Option* time =
-      command.add_option("--budget-us", a.budget_us, "stop refining a tick after this time (us)");
+      command.add_option("--budget-us", a.budget_us, "stop refining a tick after this time (µs)");
   CLI::Option* units =
       command.add_option("--budget-units", a.options.budget_units,
                          "stop refining a tick after this many convex-pair queries: repeatable");
@@ -172,7 +176,7 @@ void add_budget(CLI::App& command, ReplayArguments& a) {
   units->check(number_between(0, 1e18));
   CLI::Option* more_time =
       command.add_option("--reserve-us", a.reserve_us,
-                         "so much longer (us) for a tick that feels nothing and cannot rule out a "
+                         "so much longer (µs) for a tick that feels nothing and cannot rule out a "
                          "contact, until it can (regions engine)");
   CLI::Option* more_units =
       command.add_option("--reserve-units", a.options.reserve_units,

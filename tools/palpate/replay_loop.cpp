@@ -9,6 +9,7 @@
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/scene_engine.hpp"
 #include "tools/palpate/scene_forces.hpp"
+#include "tools/palpate/start.hpp"
 #include "tools/palpate/surface_points.hpp"
 
 namespace palpate::cli {
@@ -49,6 +50,7 @@ class Replay {
       TickResult result = complete_tick(i, poses, row.time_ns);
       forces_.add(row.t_s, poses, result);
       note(result, row);
+      if (i == 0) start_overlap_ = overlap_line(scene_, result.contacts);
       if (listeners.contacts) listeners.contacts(i, surface_points_.of(result.contacts, poses));
       if (listeners.progress && i % kShowEvery == 0) {
         listeners.progress(double(i) / double(track_.ticks.size()));
@@ -58,6 +60,7 @@ class Replay {
   }
 
   [[nodiscard]] SceneEngine& engine() { return engine_; }
+  [[nodiscard]] const std::string& start_overlap() const { return start_overlap_; }
 
  private:
   TickResult complete_tick(std::size_t i, std::span<const Pose> poses, std::uint64_t& out_ns) {
@@ -98,6 +101,7 @@ class Replay {
   const PoseTrack& track_;
   SceneEngine engine_;
   SurfacePoints surface_points_;
+  std::string start_overlap_;
   bool unlimited_;
   ProcessorClock processor_clock_;
   std::uint64_t (*clock_ns_)(void*);
@@ -126,6 +130,7 @@ Recording replay(const config::Scene& scene, const PoseTrack& track, const Repla
     std::nth_element(times_of[i].begin(), middle, times_of[i].end());
     out.ticks[i].time_ns = *middle;
   }
+  out.start_overlap = loop.start_overlap();
   out.image_bytes = loop.engine().image_bytes();
   out.engine_bytes = loop.engine().engine_bytes();
   out.limits = loop.engine().limits();

@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "config/scene.hpp"
@@ -37,6 +38,7 @@ struct ReplayListeners {
 /// What the last repetition gave; times are the median over all repetitions, tick by tick.
 struct Recording {
   std::vector<TickRow> ticks;
+  std::string start_overlap;  ///< overlap_line() of the first tick
   std::size_t image_bytes = 0;
   std::size_t engine_bytes = 0;
   Limits limits;                     ///< the scene's, or what it took

@@ -42,7 +42,7 @@ std::string profile_text(const Counters& counters, const Limits& limits) {
   std::string text;
   char line[96];
   for (std::uint32_t i = 0; i < kStages; ++i) {
-    std::snprintf(line, sizeof line, "%-16s %12.2f us a tick\n", kStageNames[i],
+    std::snprintf(line, sizeof line, "%-16s %12.2f µs a tick\n", kStageNames[i],
                   double(counters.stage_ns[i]) * 1e-3 / ticks);
     text += line;
   }

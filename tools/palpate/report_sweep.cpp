@@ -70,7 +70,7 @@ std::string words_of(const SettingRow& row, bool levels, bool exact) {
     add_number("kappa", "kappa", 1, "");
   }
   if (!exact && !levels) add_number("force_tolerance_N", "force tolerance", 1, " N");
-  add_number("budget_us", "budget", 1, " us");
+  add_number("budget_us", "budget", 1, " µs");
   if (levels) {
     if (!row.at("bounds").is_null() && row.text("bounds") == "paper") add("paper's bounds");
     if (!row.at("interpolate").is_null() && !row.flag("interpolate")) add("no interpolation");

@@ -21,6 +21,7 @@
 #include "tools/palpate/run_summary.hpp"
 #include "tools/palpate/scene_engine.hpp"
 #include "tools/palpate/stable_scene.hpp"
+#include "tools/palpate/start.hpp"
 #include "tools/realtime/device_axes.hpp"
 #include "tools/realtime/loop.hpp"
 #include "tools/realtime/realtime_thread.hpp"
@@ -43,6 +44,7 @@ struct RunOptions {
   std::optional<double> seconds;
   std::optional<double> rate_Hz;
   std::filesystem::path firmware;
+  std::filesystem::path poses;  ///< empty: the scene's [[mock.path]]
   std::string trace;
   realtime::RealtimeOptions realtime;
   bool json = false;
@@ -193,13 +195,39 @@ void report(const RunOptions& options, const RunOutcome& outcome) {
   set_exit(broken_promises(outcome).empty() ? exit_of(outcome.report.faults) : kPromiseBroken);
 }
 
-void run(const RunOptions& options) {
-  const config::Scene scene = config::load_scene(options.scene);
+/// A recorded motion takes the place of the scene's path, and is played once unless told how long.
+void take_poses(RunOptions& options, config::Scene& scene) {
+  if (options.poses.empty()) return;
+  if (options.device != "mock") {
+    throw Failure(kUsage, "only the mock hand plays a motion", "--poses",
+                  "leave it out, or use --device mock");
+  }
+  scene.hand.path = hand_path(options.poses, scene);
+  const double length_s = scene.hand.path.back().t_s;
+  if (!options.seconds && length_s > 0) options.seconds = length_s;
+}
+
+/// What surprises whoever does not know it.
+void tell_of_start(const RunOptions& options, const config::Scene& scene, SceneEngine& engine) {
+  if (options.quiet) return;
+  const bool mock = options.device == "mock";
+  if (mock && scene.hand.path.empty()) {
+    std::cerr << "The mock hand stands still: --poses FILE moves it, or [[mock.path]] in "
+              << options.scene << ".\n";
+  }
+  const std::string overlap = overlap_line(scene, engine, mock);
+  if (!overlap.empty()) std::cerr << "Note: " << overlap << ".\n";
+}
+
+void run(RunOptions options) {
+  config::Scene scene = config::load_scene(options.scene);
+  take_poses(options, scene);
   const double rate_Hz = options.rate_Hz.value_or(scene.rate_Hz);
   hal::MonotonicClock clock;
   const StableScene stable = stable_scene(scene, rate_Hz, damping(options, scene));
   if (!stable.note.empty() && !options.quiet) std::cerr << stable.note << "\n";
   SceneEngine engine(stable.scene);
+  tell_of_start(options, scene, engine);
   const auto device = make_device(options, scene, engine.image_hashes(), rate_Hz, clock);
   QueryStack queries(stable.scene, engine.engine(), engine.start_poses(), rate_Hz);
   if (const auto problem = device->open()) fail(options.device, *problem);
@@ -252,7 +280,10 @@ void add_run(CLI::App& app) {
       ->check(CLI::Range(0.001, 1e7));
   command->add_option("--rate", options->rate_Hz, "ticks a second; absent: the scene's")
       ->check(CLI::Range(1.0, 20000.0));
-  command->add_option("-o", options->trace, "write a record of each tick to this file");
+  command->add_option("--poses", options->poses,
+                      "motion of the mock hand (POSES.csv), in place of the scene's [[mock.path]]; "
+                      "it starts over where --seconds is longer");
+  command->add_option("-o,--output", options->trace, "write a record of each tick to this file");
   command
       ->add_option("--priority", options->realtime.fifo_priority,
                    "SCHED_FIFO priority of the loop; 0: an ordinary thread")

@@ -64,9 +64,9 @@ std::string histograms(const LoopReport& r) {
 
   std::string text = format("\n  %9s    %-32s  %s\n", "below", "wake-up lateness", "tick time");
   for (auto row = first; row < last; ++row) {
-    text +=
-        format("  %9s  %9s %-22s %9s", duration(row->to_ns).c_str(), grouped(row->latency).c_str(),
-               bar(row->latency, fullest).c_str(), grouped(row->tick).c_str());
+    text += "  " + right_aligned(duration(row->to_ns), 9) +
+            format("  %9s %-22s %9s", grouped(row->latency).c_str(),
+                   bar(row->latency, fullest).c_str(), grouped(row->tick).c_str());
     text += (row->tick > 0 ? " " : "") + bar(row->tick, fullest) + "\n";
   }
   return text + "\n";
@@ -99,8 +99,8 @@ std::string contact_lines(const LoopReport& r) {
                      100 * share(r.touching, r.queried), 100 * share(r.undecided, r.queried))) +
          line("force", format("mean %.3f N, max %.3f N; torque max %.4f N m",
                               mean(r.force_N_sum, r.ticks), r.force_N_max, r.torque_Nm_max)) +
-         line("energy",
-              format("hand to scene %.2e J, never below %.2e J", r.energy_J, r.energy_J_min)) +
+         line("energy", format("hand to scene %.2e J, never below %.2e J", r.energy_J + 0.0,
+                               r.energy_J_min + 0.0)) +
          line("cut by budget", cut_by_budget(r));
 }
 
@@ -149,7 +149,7 @@ std::string run_text(const RunOutcome& o) {
   std::string text =
       o.scene.filename().string() + " on the " + o.device + " device, " +
       format("%.1f s at %.0f Hz, ", seconds, o.rate_Hz) +
-      (o.budget_us ? format("budget %.0f us\n\n", *o.budget_us) : "no budget but the period\n\n");
+      (o.budget_us ? format("budget %.0f µs\n\n", *o.budget_us) : "no budget but the period\n\n");
   std::string state(realtime::name(r.state));
   for (const std::string_view fault : realtime::names(r.faults)) state += " " + std::string(fault);
   text += line("state", state) + timing_lines(r) + contact_lines(r) + host_lines(o);

@@ -17,6 +17,7 @@
 #include "tools/palpate/sweep_plots.hpp"
 #include "tools/palpate/sweep_runs.hpp"
 #include "tools/palpate/sweep_table.hpp"
+#include "tools/palpate/words.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -71,14 +72,17 @@ void require_one_budget(const SweepArguments& a) {
                 "give --budget-us with one number beside it");
 }
 
+/// There is nothing to compare with where the levels engine was not asked for.
+std::string times_text(double ratio) { return std::isnan(ratio) ? "-" : format("%.1f", ratio); }
+
 void print_table(std::span<const SweepRow> rows) {
-  std::printf("%-60s %10s %10s %8s %8s %10s %8s\n", "setting", "median us", "p99.9 us", "force %",
+  std::printf("%-60s %11s %11s %8s %8s %10s %8s\n", "setting", "median µs", "p99.9 µs", "force %",
               "torque %", "noticeable", "speed-up");
   for (const SweepRow& row : rows) {
     const SweepFigures& f = row.figures;
-    std::printf("%-60s %10.1f %10.1f %8.2f %8.2f %10.3f %8.1f%s\n", id_of(row.setting).c_str(),
+    std::printf("%-60s %10.1f %10.1f %8.2f %8.2f %10.3f %8s%s\n", id_of(row.setting).c_str(),
                 f.median_ns * 1e-3, f.p999_ns * 1e-3, 100 * f.force_nrmse, 100 * f.torque_nrmse,
-                f.noticeable, row.speedup_median, row.pareto ? " *" : "");
+                f.noticeable, times_text(row.speedup_median).c_str(), row.pareto ? " *" : "");
   }
   std::puts("* nothing here is both faster and more accurate");
 }
@@ -88,7 +92,7 @@ void recommend(const SweepArguments& a, const SweepFolder& folder, const config:
   const double budget_us = a.budget_us[0];
   const SweepRow* best = most_accurate(rows, budget_us);
   if (!best) {
-    throw Failure(kOther, "no setting's p99.9 fits " + config::to_text(budget_us) + " us", a.scene,
+    throw Failure(kOther, "no setting's p99.9 fits " + config::to_text(budget_us) + " µs", a.scene,
                   "raise --budget-us, or try larger --s0 and --force-tolerance");
   }
   const auto file = folder.file("recommended.toml");
@@ -176,7 +180,7 @@ void add_axes(CLI::App& command, SweepArguments& a) {
                   "N, of regions; default: 0.1, 1 and 10 times stiffness times delta")
       ->delimiter(',')
       ->check(number_between(0, 1e18));
-  command.add_option("--budget-us", a.budget_us, "us, or inf; default: inf")
+  command.add_option("--budget-us", a.budget_us, "µs, or inf; default: inf")
       ->delimiter(',')
       ->check(number_or_inf(0, 1e9));
   command.add_option("--interpolate", a.interpolate, "true, false; default: true")->delimiter(',');

@@ -4,10 +4,13 @@
 #include <toml++/toml.h>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
+#include <string>
+#include <system_error>
 #include <tuple>
 
+#include "config/text_file.hpp"
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/scene_edit.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -36,10 +39,12 @@ void put_setting(const SweepSetting& s, double budget_us, toml::table& engine) {
   if (std::isfinite(s.kappa)) engine.insert_or_assign("kappa", s.kappa);
 }
 
+/// @param from  the scene's file, which its images are relative to  @param to  a folder
 void move_images(toml::table& scene, const fs::path& from, const fs::path& to) {
+  const fs::path home = fs::absolute(from).parent_path();
   for (toml::node& body : *scene["body"].as_array()) {
     toml::table& keys = *body.as_table();
-    const fs::path image = fs::absolute(from) / keys["image"].value_or(std::string());
+    const fs::path image = home / keys["image"].value_or(std::string());
     keys.insert_or_assign("image", fs::proximate(image, fs::absolute(to)).string());
   }
 }
@@ -63,8 +68,8 @@ std::string advice(const SweepRow& row, double budget_us) {
   const SweepFigures& f = row.figures;
   char text[640];
   std::snprintf(text, sizeof text,
-                "Within %g us on this machine: %s\n"
-                "  costs  median %.1f us, p99 %.1f us, p99.9 %.1f us, longest %.1f us over %zu "
+                "Within %g µs on this machine: %s\n"
+                "  costs  median %.1f µs, p99 %.1f µs, p99.9 %.1f µs, longest %.1f µs over %zu "
                 "ticks\n"
                 "  loses  force error %.3g %% (NRMSE), torque error %.3g %%; a hand could notice "
                 "it in %.3g %% of the ticks\n"
@@ -78,12 +83,15 @@ std::string advice(const SweepRow& row, double budget_us) {
 std::string scene_text(const fs::path& scene, const fs::path& folder, const SweepSetting& setting,
                        double budget_us) {
   try {
-    toml::table keys = toml::parse_file(scene.string());
+    std::string text;
+    if (const std::error_code error = config::read_text(scene, text)) {
+      throw Failure(kRefused, "cannot read the scene (" + error.message() + ")", scene.string(),
+                    "leave it in place during a sweep");
+    }
+    toml::table keys = toml::parse(text);
     put_setting(setting, budget_us, table(keys, "engine"));
-    move_images(keys, scene.parent_path(), folder);
-    std::ostringstream out;
-    out << keys << "\n";
-    return out.str();
+    move_images(keys, scene, folder);
+    return edited_scene(text, keys);
   } catch (const toml::parse_error& e) {
     throw Failure(kUsage, std::string("the scene has changed: ") + e.what(), scene.string(),
                   "let nobody write to it during a sweep");

@@ -25,7 +25,7 @@ std::string short_number(double value) {
 
 Panel trade_panel(std::span<const SweepRow> rows, double delta_m) {
   Panel panel{"delta " + short_number(delta_m * 1e3) + " mm",
-              {"median time of a tick, us", true},
+              {"median time of a tick, µs", true},
               {"force error (NRMSE), %", false},
               {{"levels", Mark::point, {}},
                {"regions", Mark::point, {}},
@@ -83,7 +83,7 @@ std::string trade_plot(std::span<const SweepRow> rows) {
 
 std::string profile_plot(const SweepFolder& folder, std::span<const SweepRow> rows) {
   std::vector<Panel> panels = {{"Contact profile", {"tick", false}, {"force, N", false}, {}},
-                               {"", {"tick", false}, {"time, us", true}, {}},
+                               {"", {"tick", false}, {"time, µs", true}, {}},
                                {"", {"tick", false}, {"front, nodes", true}, {}}};
   for (const SweepRow& row : rows) {
     if (panels[0].series.size() == kProfiles) break;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/palpate/words.hpp"
 
+#include <algorithm>
+
 #include <cstdarg>
 #include <cstdio>
 
@@ -28,8 +30,16 @@ std::string count_of(std::uint64_t count, const char* one, const char* many) {
 std::string duration(std::uint64_t ns) {
   const double value = static_cast<double>(ns);
   if (ns < 1000) return format("%.0f ns", value);
-  if (ns < 1'000'000) return format("%.1f us", value / 1e3);
+  if (ns < 1'000'000) return format("%.1f µs", value / 1e3);
   return format("%.2f ms", value / 1e6);
+}
+
+std::string right_aligned(const std::string& text, std::size_t columns) {
+  // Of a letter's bytes in UTF-8 all but the first begin with 10.
+  const auto used = static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+  }));
+  return std::string(columns > used ? columns - used : 0, ' ') + text;
 }
 
 std::string hex(std::span<const std::uint8_t> bytes) {

@@ -2,6 +2,7 @@
 // Figures in the words of a summary.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -17,8 +18,11 @@ std::string grouped(std::uint64_t value);
 /// "1 tick", "2,000 ticks".
 std::string count_of(std::uint64_t count, const char* one, const char* many);
 
-/// With the unit that fits: "812 ns", "15.1 us", "13.42 ms".
+/// With the unit that fits: "812 ns", "15.1 µs", "13.42 ms".
 std::string duration(std::uint64_t ns);
+
+/// With blanks before it, where it takes less than so many columns of a terminal.
+std::string right_aligned(const std::string& text, std::size_t columns);
 
 /// Two lower-case digits a byte.
 std::string hex(std::span<const std::uint8_t> bytes);

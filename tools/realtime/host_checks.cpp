@@ -20,9 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
 constexpr std::uint64_t kWantedPriority = 80;
-/// Of Palpate's sources: udev rule, limits and boot service at once.
-constexpr const char* kSetUp = "sudo tools/setup/host";
-constexpr const char* kSetUpAndLogIn = "sudo tools/setup/host, then log in again";
 
 /// The first line of a small file; absent where it cannot be read.
 std::optional<std::string> first_line(const fs::path& file) {
@@ -53,27 +50,27 @@ HostCheck kernel_preemption(const fs::path& root) {
               "sudo apt install linux-image-rt-amd64 && sudo reboot");
 }
 
-HostCheck rtprio_limit(const HostRights& rights) {
+HostCheck rtprio_limit(const HostRights& rights, const std::string& set_up) {
   const bool ok = rights.any_priority || rights.max_fifo_priority >= kWantedPriority;
   return make("rtprio_limit", ok,
               rights.any_priority ? "any (CAP_SYS_NICE)"
                                   : number_or_unlimited(rights.max_fifo_priority, ""),
-              "at least " + std::to_string(kWantedPriority), kSetUpAndLogIn);
+              "at least " + std::to_string(kWantedPriority), set_up + ", then log in again");
 }
 
-HostCheck memlock_limit(const HostRights& rights) {
+HostCheck memlock_limit(const HostRights& rights, const std::string& set_up) {
   const bool ok = rights.any_memory || rights.max_locked_bytes == kUnlimited;
   return make("memlock_limit", ok,
               rights.any_memory ? "any (CAP_IPC_LOCK)"
                                 : number_or_unlimited(rights.max_locked_bytes, " bytes"),
-              "unlimited", kSetUpAndLogIn);
+              "unlimited", set_up + ", then log in again");
 }
 
 HostCheck realtime_throttling(const fs::path& root) {
   const std::string found =
       first_line(root / "proc/sys/kernel/sched_rt_runtime_us").value_or("unknown");
   return make("realtime_throttling", found == "-1" || found == "950000" || found == "1000000",
-              found + " us of each second for real-time threads", "-1 (no bound) or 950000",
+              found + " µs of each second for real-time threads", "-1 (no bound) or 950000",
               "sudo sysctl -w kernel.sched_rt_runtime_us=950000");
 }
 
@@ -95,7 +92,7 @@ HostCheck isolated_cpus(const fs::path& root) {
               "then palpate run --cpu 1");
 }
 
-HostCheck cpu_dma_latency(const fs::path& root) {
+HostCheck cpu_dma_latency(const fs::path& root, const std::string& set_up) {
   const fs::path file = root / "dev/cpu_dma_latency";
   const bool exists = fs::exists(file);
   const bool ok = !exists || ::access(file.c_str(), W_OK) == 0;
@@ -103,10 +100,10 @@ HostCheck cpu_dma_latency(const fs::path& root) {
               !exists ? "no processor sleep states"
               : ok    ? "writable"
                       : "not writable",
-              "/dev/cpu_dma_latency writable, so that the loop can keep processors awake", kSetUp);
+              "/dev/cpu_dma_latency writable, so that the loop can keep processors awake", set_up);
 }
 
-HostCheck frequency_scaling(const fs::path& root) {
+HostCheck frequency_scaling(const fs::path& root, const std::string& set_up) {
   std::error_code unreadable;
   std::string found;
   for (const auto& cpu : fs::directory_iterator(root / "sys/devices/system/cpu", unreadable)) {
@@ -115,22 +112,22 @@ HostCheck frequency_scaling(const fs::path& root) {
     found = *governor;
   }
   return make("frequency_scaling", found.empty(), found.empty() ? "none, or performance" : found,
-              "the governor performance on every processor", kSetUp);
+              "the governor performance on every processor", set_up);
 }
 
-HostCheck usb_autosuspend(const fs::path& root) {
+HostCheck usb_autosuspend(const fs::path& root, const std::string& set_up) {
   const auto found = first_line(root / "sys/module/usbcore/parameters/autosuspend");
   return make("usb_autosuspend", !found || *found == "-1",
               found ? *found + " s" : "no USB in this kernel",
               "-1 (never): a suspended device wakes up too late",
-              "sudo tools/setup/host, then plug the device in again");
+              set_up + ", then plug the device in again");
 }
 
-HostCheck udev_rule(const fs::path& root) {
+HostCheck udev_rule(const fs::path& root, const std::string& set_up) {
   constexpr const char* kRule = "udev/rules.d/70-palpate.rules";
   const bool ok = fs::exists(root / "etc" / kRule) || fs::exists(root / "usr/lib" / kRule);
   return make("udev_rule", ok, ok ? "installed" : "not installed",
-              "70-palpate.rules, so that haptic devices may be used without root", kSetUp);
+              "70-palpate.rules, so that haptic devices may be used without root", set_up);
 }
 
 bool flushes_denormals() {
@@ -186,11 +183,28 @@ HostRights host_rights() {
   return rights;
 }
 
-std::vector<HostCheck> check_host(const HostRights& rights, const fs::path& root) {
-  return {kernel_preemption(root),   rtprio_limit(rights),    memlock_limit(rights),
-          realtime_throttling(root), clock_source(root),      isolated_cpus(root),
-          cpu_dma_latency(root),     frequency_scaling(root), usb_autosuspend(root),
-          udev_rule(root),           denormal_mode()};
+fs::path set_up_script() {
+  std::error_code none;
+  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  const fs::path installed =
+      (program.parent_path() / "../share/palpate/tools/setup/host").lexically_normal();
+  return fs::exists(installed, none) ? installed : fs::path("tools/setup/host");
+}
+
+std::vector<HostCheck> check_host(const HostRights& rights, const fs::path& root,
+                                  const fs::path& script) {
+  const std::string set_up = "sudo " + script.string();
+  return {kernel_preemption(root),
+          rtprio_limit(rights, set_up),
+          memlock_limit(rights, set_up),
+          realtime_throttling(root),
+          clock_source(root),
+          isolated_cpus(root),
+          cpu_dma_latency(root, set_up),
+          frequency_scaling(root, set_up),
+          usb_autosuspend(root, set_up),
+          udev_rule(root, set_up),
+          denormal_mode()};
 }
 
 }  // namespace palpate::realtime

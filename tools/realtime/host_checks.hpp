@@ -28,9 +28,14 @@ struct HostRights {
 
 [[nodiscard]] HostRights host_rights();
 
-/// All checks, in a fixed order. Reads small files below /proc, /sys and /dev. @param root  where
-/// those lie; tests give a copy
-[[nodiscard]] std::vector<HostCheck> check_host(const HostRights& rights,
-                                                const std::filesystem::path& root = "/");
+/// What readies a host: beside an installed executable, else of the sources, relative to them.
+[[nodiscard]] std::filesystem::path set_up_script();
+
+/// All checks, in a fixed order. Reads small files below /proc, /sys and /dev.
+/// @param root  where those lie; tests give a copy
+/// @param script  the one that a host is readied with
+[[nodiscard]] std::vector<HostCheck> check_host(
+    const HostRights& rights, const std::filesystem::path& root = "/",
+    const std::filesystem::path& script = "tools/setup/host");
 
 }  // namespace palpate::realtime

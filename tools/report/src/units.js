@@ -10,6 +10,12 @@ export function number(value, digits = 3) {
     : value.toExponential(digits - 1).replace(/\.?0+e/, 'e');
 }
 
+/// With so many digits behind the point; what rounds to zero has no sign.
+export function fixed(value, digits) {
+  const text = value.toFixed(digits);
+  return Number(text) === 0 ? (0).toFixed(digits) : text;
+}
+
 export const percent = (share) => (share === null ? '–' : `${number(100 * share)} %`);
 export const millimetres = (metres) => (metres === null ? '–' : `${number(1e3 * metres)} mm`);
 

@@ -2,7 +2,7 @@
 // The 3D view and its controls.
 import { counts, floats } from './data.js';
 import { Stage } from './stage.js';
-import { millimetres, number } from './units.js';
+import { fixed, millimetres, number } from './units.js';
 
 const at = (id) => document.getElementById(id);
 const kNotShown = 0xffffffff;
@@ -57,7 +57,7 @@ function describe(view, data, frame, contacts, found, stage) {
   return (
     `Tick ${tick}, ${number(stage.times[frame], 4)} s. Force ${number(force)} N. ${shown}` +
     `${found > 0 ? `, least distance ${millimetres(least)}` : ''}. ` +
-    `Tool moved by (${Array.from(position, (v) => (1e3 * v).toFixed(2)).join(', ')}) mm. ${pieces.join(' ')}`
+    `Tool moved by (${Array.from(position, (v) => fixed(1e3 * v, 2)).join(', ')}) mm. ${pieces.join(' ')}`
   );
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "hal/device.hpp"
 #include "rt_core/palpate_rt.hpp"
 
 int main() {

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Numbers of the report's page, without a browser.
+import assert from 'node:assert/strict';
+import { duration, fixed, number } from '../../tools/report/src/units.js';
+
+assert.equal(fixed(-0.001, 2), '0.00');
+assert.equal(fixed(-0.006, 2), '-0.01');
+assert.equal(fixed(1.234, 2), '1.23');
+assert.equal(number(null), '–');
+assert.equal(duration(12), '12 µs');
