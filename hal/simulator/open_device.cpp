@@ -64,7 +64,10 @@ OpenDevice::OpenDevice(OpenDeviceOptions options)
 
 void OpenDevice::advance_to(std::uint64_t now_ns) {
   if (next_ns_ == 0) start_ns_ = next_ns_ = now_ns;
-  for (; next_ns_ <= now_ns; next_ns_ += period_ns_) period(next_ns_);
+  for (; next_ns_ <= now_ns; next_ns_ += period_ns_) {
+    if (back_ns_ != 0 && next_ns_ >= back_ns_) restart();
+    period(next_ns_);
+  }
   now_ns_ = now_ns;
 }
 
@@ -87,7 +90,7 @@ void OpenDevice::period(std::uint64_t now_ns) {
                        quaternion_unit(q.z)};
   end_.stamp(state);
   // One that was not fetched is replaced: the host gets the newest.
-  if (!silent_) ready_ = encode(state);
+  if (!silent_ && back_ns_ == 0) ready_ = encode(state);
 }
 
 flash::SlotRules OpenDevice::rules() const noexcept {
@@ -149,7 +152,7 @@ IoResult OpenDevice::vendor_out(const ControlRequest& request) {
   const bool is_session = request.request == static_cast<std::uint8_t>(Request::session);
   const bool is_restart = request.request == static_cast<std::uint8_t>(Request::restart);
   if (is_restart && !in_session_) {
-    restart();
+    leave_bus();
   } else if (is_session && request.value == 1) {
     in_session_ = true;
     end_.begin_session();
@@ -180,8 +183,18 @@ void OpenDevice::bus_reset() {
   if (dfu_) dfu_->bus_reset();
 }
 
+/// Its restart begins; this request is still answered.
+void OpenDevice::leave_bus() {
+  if (options_.restart_ns == 0) return restart();
+  bus_reset();
+  ready_.reset();
+  back_ns_ = now_ns_ + options_.restart_ns;
+  ++times_left_;
+}
+
 void OpenDevice::restart() {
   bus_reset();
+  back_ns_ = 0;
   if (options_.flash == nullptr) return;
   slots_.emplace(*options_.flash, options_.layout, rules());
   dfu_.emplace(*slots_);

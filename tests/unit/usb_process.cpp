@@ -157,6 +157,13 @@ TEST_F(UsbProcess, flash_writes_the_slots_in_turn_and_switches) {
   EXPECT_NE(in_use.err.find("slot B is in use"), std::string::npos) << in_use.err;
 }
 
+TEST_F(UsbProcess, flash_verifies_a_device_that_restarts_without_leaving_the_bus) {
+  plug_in({"stays=" + path("flash")});
+  const test::Outcome outcome = palpate({"flash", path("one.palp"), "--device", "usb", "--verify"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "Slot A holds the image, read back and compared; the device uses it.\n");
+}
+
 TEST_F(UsbProcess, dfu_util_writes_and_reads_back_the_same_bytes) {
   emit("one.palp", "one.dfu", "0x0001");
   const test::Outcome written = dfu_util({"-a", "0", "-D", path("one.dfu")});
