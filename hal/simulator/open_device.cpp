@@ -16,6 +16,7 @@ using namespace protocol;
 
 constexpr double kMicro = 1e-6;
 constexpr std::uint16_t kUpdateInterface = 1;
+constexpr std::uint64_t kNsPerMs = 1'000'000;
 
 std::int32_t nanometres(double m) { return static_cast<std::int32_t>(std::lround(1e9 * m)); }
 std::int32_t quaternion_unit(double c) {
@@ -69,6 +70,14 @@ void OpenDevice::advance_to(std::uint64_t now_ns) {
     period(next_ns_);
   }
   now_ns_ = now_ns;
+  work_on_flash();
+}
+
+void OpenDevice::work_on_flash() {
+  while (dfu_ && dfu_->has_work() && flash_ns_ <= now_ns_) {
+    dfu_->work();
+    flash_ns_ += dfu_->step_ms() * kNsPerMs;
+  }
 }
 
 void OpenDevice::period(std::uint64_t now_ns) {
@@ -168,8 +177,10 @@ IoResult OpenDevice::vendor_out(const ControlRequest& request) {
 IoResult OpenDevice::update(const ControlRequest& request, std::span<const std::byte> data,
                             std::span<std::byte> out) {
   if (!dfu_) return {IoStatus::stalled};
+  const bool had_work = dfu_->has_work();
   const flash::DfuAnswer answer =
       dfu_->handle({flash::DfuRequest{request.request}, request.value}, data, out.size());
+  if (!had_work) flash_ns_ = now_ns_ + dfu_->step_ms() * kNsPerMs;
   if (dfu_->busy()) end_.end_session();
   if (answer.stall) return {IoStatus::stalled};
   const std::size_t length = std::min(answer.bytes.size(), out.size());
@@ -197,7 +208,7 @@ void OpenDevice::restart() {
   back_ns_ = 0;
   if (options_.flash == nullptr) return;
   slots_.emplace(*options_.flash, options_.layout, rules());
-  dfu_.emplace(*slots_);
+  dfu_.emplace(*slots_, options_.flash_times);
   const bool holds_image = slots_->start() != flash::kNone && slots_->confirm();
   end_.set_health(holds_image ? kHealthy : kNoImage);
 }

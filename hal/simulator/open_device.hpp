@@ -21,6 +21,7 @@ struct OpenDeviceOptions {
   /// Its flash, which outlives it; null: it holds no images.
   flash::FlashMemory* flash = nullptr;
   flash::SlotLayout layout;
+  flash::FlashTimes flash_times;  ///< what its flash takes, in its own time
   /// The public key that images must be signed for; absent: none
   std::optional<signature::PublicKey> key;
   std::string serial = "SIM0001";
@@ -64,6 +65,7 @@ class OpenDevice : public SimulatedDevice {
 
  private:
   void period(std::uint64_t now_ns);
+  void work_on_flash();
   void leave_bus();
   [[nodiscard]] flash::SlotRules rules() const noexcept;
   [[nodiscard]] protocol::ImageIdentity identity() const;
@@ -91,6 +93,7 @@ class OpenDevice : public SimulatedDevice {
   bool in_session_ = false;
   std::optional<flash::Slots> slots_;
   std::optional<flash::DfuDevice> dfu_;
+  std::uint64_t flash_ns_ = 0;  ///< when the step of its flash that is under way is over
 };
 
 }  // namespace palpate::hal::simulator

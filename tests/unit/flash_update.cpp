@@ -267,6 +267,7 @@ TEST(DfuDevice, random_requests_never_harm_the_image_in_use) {
     const auto request = static_cast<DfuRequest>(random() % 8);
     if (random() % 16 == 0) dfu.select(static_cast<std::uint8_t>(random() % 2));
     if (random() % 8 == 0) block = 0;
+    if (random() % 2 == 0) dfu.work();
     const std::size_t length = random() % 4 == 0 ? random() % data.size() : 64;
     const auto answer =
         dfu.handle({request, block}, std::span(data).first(random() % 5 == 0 ? 0 : length), length);
@@ -285,6 +286,8 @@ TEST(DfuDevice, lost_block_is_noticed) {
   DfuDevice dfu(slots);
   const std::vector<std::byte> data(64);
   EXPECT_FALSE(dfu.handle({DfuRequest::download, 0}, data, 0).stall);
+  while (dfu.work()) {
+  }
   static_cast<void>(dfu.handle({DfuRequest::get_status, 0}, {}, 6));
   EXPECT_TRUE(dfu.handle({DfuRequest::download, 2}, data, 0).stall);
   const auto status = dfu.handle({DfuRequest::get_status, 0}, {}, 6).bytes;
