@@ -167,6 +167,17 @@ TEST(DeviceLoop, unplugging_is_a_device_error_at_once) {
   EXPECT_EQ(norm(model.rendered().force_N), 0.0);
 }
 
+TEST(DeviceLoop, last_tick_leaves_no_force_two_periods_later) {
+  OpenDevice model(pressing());
+  OpenLoop rig(model, seconds_of(1.5));
+  double last_N = 0;
+  rig.pumped.each_step = [&] { last_N = norm(model.rendered().force_N); };
+  EXPECT_EQ(rig.run().state, LoopState::rendering);
+  EXPECT_GT(last_N, 0.5);
+  rig.pumped.sleep_until(rig.clock.now_ns() + 2 * kMs);
+  EXPECT_EQ(norm(model.rendered().force_N), 0.0);
+}
+
 TEST(DeviceLoop, silent_device_is_a_stale_state) {
   OpenDevice model(pressing());
   OpenLoop rig(model, seconds_of(2));

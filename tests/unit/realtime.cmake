@@ -10,6 +10,10 @@ palpate_test(realtime_test
 target_compile_definitions(realtime_test PRIVATE
   PALPATE_DOCS="${PROJECT_SOURCE_DIR}/docs" PALPATE_TESTS="${PROJECT_SOURCE_DIR}/tests")
 
+if(NOT PALPATE_SANITIZE)  # which interpose on the same calls
+  palpate_test(realtime_end_test SOURCES unit/realtime_end.cpp LIBS palpate_tools)
+endif()
+
 # These run the executable.
 palpate_test(realtime_process_test SOURCES unit/realtime_process.cpp
   LIBS palpate_rt nlohmann_json::nlohmann_json)

@@ -152,9 +152,9 @@ class ServerThread {
   std::optional<realtime::RealtimeThread> thread_;
 };
 
-/// Runs the loop to its end, telling how far it has come.
+/// Runs the loop to its end, telling how far it has come, and stops the device.
 realtime::HostGrant drive(const RunOptions& options, const realtime::LoopSettings& settings,
-                          realtime::Loop& loop) {
+                          realtime::Loop& loop, hal::Device& device) {
   const StopOnSignal stop_on_signal;
   const bake::Progress show = progress(options.quiet);
   realtime::RealtimeThread thread(options.realtime, [&loop] { loop.run(g_stop); });
@@ -163,7 +163,9 @@ realtime::HostGrant drive(const RunOptions& options, const realtime::LoopSetting
     if (!options.seconds) continue;
     show("run", static_cast<double>(loop.periods_passed()) / static_cast<double>(settings.periods));
   }
-  return thread.join();
+  realtime::HostGrant grant = thread.join();
+  device.stop();
+  return grant;
 }
 
 /// A file given by the user cannot be written.
@@ -221,8 +223,7 @@ void run(const RunOptions& options) {
 
   RunOutcome outcome;
   const ServerThread server(options, stable.scene, queries.server(), clock);
-  outcome.grant = drive(options, settings, *loop);
-  device->stop();
+  outcome.grant = drive(options, settings, *loop, *device);
   outcome.scene = scene.file;
   outcome.device = options.device;
   outcome.rate_Hz = rate_Hz;
