@@ -40,6 +40,8 @@ enum DeviceFault : std::uint32_t {
   kDeviceIdle = 1u << 8,      ///< it takes them, and renders no force
 };
 
+inline constexpr std::uint8_t kDeviceFaultKinds = 9;
+
 /// One reading of the device.
 struct DeviceState {
   std::uint64_t sequence = 0;  ///< counts readings from 1; a gap is a lost reading

@@ -167,6 +167,16 @@ TEST(DeviceLoop, unplugging_is_a_device_error_at_once) {
   EXPECT_EQ(norm(model.rendered().force_N), 0.0);
 }
 
+TEST(DeviceLoop, report_says_what_the_device_said_and_in_which_tick) {
+  OpenDevice model(pressing());
+  OpenLoop rig(model, seconds_of(2), faults_of({{FaultKind::unplug, 1.5, 100, 0, 1}}));
+  const LoopReport& report = rig.run();
+  EXPECT_EQ(report.device_faults, hal::kDeviceLost);
+  EXPECT_NEAR(static_cast<double>(report.device_fault_ticks[0]), 1500, 3);
+  EXPECT_EQ(report.fault_ticks[static_cast<std::size_t>(Fault::device_error)],
+            report.device_fault_ticks[0]);
+}
+
 TEST(DeviceLoop, last_tick_leaves_no_force_two_periods_later) {
   OpenDevice model(pressing());
   OpenLoop rig(model, seconds_of(1.5));

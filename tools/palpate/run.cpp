@@ -17,6 +17,8 @@
 #include "hal/mock/device.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/device_choice.hpp"
+#include "tools/palpate/error_line.hpp"
+#include "tools/palpate/fault_words.hpp"
 #include "tools/palpate/query_stack.hpp"
 #include "tools/palpate/run_summary.hpp"
 #include "tools/palpate/scene_engine.hpp"
@@ -192,7 +194,15 @@ void report(const RunOptions& options, const RunOutcome& outcome) {
   } else {
     std::cout << run_text(outcome);
   }
-  set_exit(broken_promises(outcome).empty() ? exit_of(outcome.report.faults) : kPromiseBroken);
+  const bool kept = broken_promises(outcome).empty();
+  set_exit(kept ? exit_of(outcome.report.faults) : kPromiseBroken);
+  if (!kept || outcome.report.faults.empty()) return;
+  for (const FaultNote& note : fault_notes(outcome.report)) {
+    if (note.fault.empty()) continue;
+    print_error("palpate", note.cause + ": " + options.device + ", tick " +
+                               std::to_string(note.tick) + ": " + note.fix);
+    return;
+  }
 }
 
 void run(const RunOptions& options) {
