@@ -3,7 +3,7 @@ palpate_test(realtime_test
   SOURCES
     unit/realtime_histogram.cpp unit/realtime_safety.cpp unit/realtime_loop.cpp
     unit/realtime_wall.cpp unit/realtime_trace.cpp unit/realtime_thread.cpp
-    unit/realtime_host_checks.cpp unit/realtime_passivity.cpp unit/realtime_server.cpp
+    unit/realtime_host_checks.cpp unit/realtime_usb_checks.cpp unit/realtime_passivity.cpp unit/realtime_server.cpp
     unit/realtime_steady.cpp unit/realtime_states.cpp unit/realtime_axes.cpp
     unit/safety_doc.cpp
   LIBS palpate_tools)
