@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hal/usbip/vhci.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <fstream>
 #include <sstream>
+#include <string>
 #include <vector>
 
 #include "hal/usbip/messages.hpp"
@@ -54,11 +58,15 @@ std::optional<unsigned> Vhci::free_port() const {
 bool Vhci::attach(int fd, simulator::UsbSpeed speed) const {
   const auto port = free_port();
   if (!port) return false;
-  std::ostringstream request;
-  request << *port << ' ' << fd << ' ' << kDevice << ' ' << static_cast<unsigned>(speed);
-  std::ofstream file(folder_ / "attach", std::ios::in | std::ios::out);
-  file << request.str() << std::flush;
-  return file.good();
+  const std::string request = std::to_string(*port) + " " + std::to_string(fd) + " " +
+                              std::to_string(kDevice) + " " +
+                              std::to_string(static_cast<unsigned>(speed));
+  // Whoever asks to read it is refused.
+  const int file = ::open((folder_ / "attach").c_str(), O_WRONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const ssize_t written = ::write(file, request.data(), request.size());
+  ::close(file);
+  return written == static_cast<ssize_t>(request.size());
 }
 
 }  // namespace palpate::hal::usbip

@@ -115,6 +115,7 @@ class Replugger {
     } else {
       ::close(ends[0]);
       std::printf("the device is back; attach it again\n");
+      std::fflush(stdout);
     }
     ::close(ends[1]);
   }
