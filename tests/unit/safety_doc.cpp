@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// docs/SAFETY.md names a guard and a test for every hazard: the tests are there.
+// docs/SAFETY.md names a guard and a test for every hazard, and the tests are there; other pages
+// keep their own rules.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -23,6 +23,11 @@ bool names_a_host_controller(const std::string& text) {
                      [&](const char* name) { return text.find(name) != std::string::npos; });
 }
 
+void append(std::string& list, const char* between, const std::string& text) {
+  if (!list.empty()) list += between;
+  list += text;
+}
+
 bool rule_installed(const fs::path& root) {
   return fs::exists(root / "etc" / kRule) || fs::exists(root / "usr/lib" / kRule);
 }
@@ -82,9 +87,11 @@ HostCheck usb_autosuspend(const fs::path& root) {
   for (const auto& entry : fs::directory_iterator(root / "sys/bus/usb/devices", unreadable)) {
     if (!is_haptic(entry.path())) continue;
     const std::string sleep = sleep_of(entry.path());
-    std::string& list = sleep.empty() ? awake : asleep;
-    const std::string name = sleep.empty() ? entry.path().filename().string() : sleep;
-    list += (list.empty() ? "" : ", ") + name;
+    if (sleep.empty()) {
+      append(awake, ", ", entry.path().filename().string());
+    } else {
+      append(asleep, ", ", sleep);
+    }
   }
   if (!asleep.empty()) return check(false, asleep);
   if (!awake.empty()) return check(true, "off for " + awake);
@@ -140,11 +147,13 @@ HostCheck usb_threads(const fs::path& root) {
     if (pid.find_first_not_of("0123456789") != std::string::npos) continue;
     const Thread thread = thread_of(entry.path());
     if (!serves_usb(thread.name, by_timers)) continue;
-    found += (found.empty() ? "" : ", ") + thread.name + " at " +
-             (thread.policy == 0 ? "SCHED_OTHER" : "priority " + std::to_string(thread.priority));
+    append(
+        found, ", ",
+        thread.name + " at " +
+            (thread.policy == 0 ? "SCHED_OTHER" : "priority " + std::to_string(thread.priority)));
     if (thread.above_the_loop()) continue;
     ok = false;
-    mend += (mend.empty() ? "" : " && ") + std::string("sudo chrt -f -p 86 ") + pid;
+    append(mend, " && ", "sudo chrt -f -p 86 " + pid);
   }
   return make_check("usb_threads", ok,
                     found.empty() ? "none: this kernel serves USB in interrupts" : found,
@@ -167,14 +176,14 @@ HostCheck usb_interrupts(const fs::path& root) {
     const std::string where =
         first_line(irq / "effective_affinity_list")
             .value_or(first_line(irq / "smp_affinity_list").value_or("unknown"));
-    found += (found.empty() ? "" : ", ") + number + " on " + where;
+    append(found, ", ", number);
+    append(found, " on ", where);
     const std::set<int> served = processors_in(where);
     const bool apart = std::none_of(served.begin(), served.end(),
                                     [&](int cpu) { return isolated.count(cpu) > 0; });
     if (apart) continue;
     ok = false;
-    mend += (mend.empty() ? "" : " && ") + std::string("echo 0 | sudo tee /proc/irq/") + number +
-            "/smp_affinity_list";
+    append(mend, " && ", "echo 0 | sudo tee /proc/irq/" + number + "/smp_affinity_list");
   }
   return make_check("usb_interrupts", ok,
                     found.empty() ? "none" : "interrupts and processors: " + found,
