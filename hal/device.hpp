@@ -35,7 +35,12 @@ enum DeviceFault : std::uint32_t {
   kDeviceBadReading = 1u << 3,  ///< a sensor's reading cannot be right
   kDeviceFailed = 1u << 4,      ///< a motor, its power, or the device's own checks
   kDeviceSilenced = 1u << 5,  ///< the force was ended because commands came too late or were stale
+  kDeviceRefuses = 1u << 6,   ///< it refuses the commands that it is sent
+  kDeviceIgnores = 1u << 7,   ///< it neither takes nor refuses them
+  kDeviceIdle = 1u << 8,      ///< it takes them, and renders no force
 };
+
+inline constexpr std::uint8_t kDeviceFaultKinds = 9;
 
 /// One reading of the device.
 struct DeviceState {

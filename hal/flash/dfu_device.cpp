@@ -65,13 +65,42 @@ DfuAnswer DfuDevice::download(std::uint16_t block, std::span<const std::byte> da
   } else if (state_ != DfuState::download_idle) {
     return fail(DfuStatus::stalled);
   }
-  if (data.empty()) {
-    state_ = DfuState::manifest_sync;
-    return {};
-  }
   // Blocks count past 65535; a lost or repeated one is noticed all the same.
-  if (block != next_block_++) return fail(DfuStatus::address);
-  return settle(slots_.write(data), DfuState::download_sync);
+  if (!data.empty() && block != next_block_++) return fail(DfuStatus::address);
+  block_bytes_ = data.size();
+  for (std::size_t i = 0; i < block_bytes_; ++i) block_[i] = data[i];
+  state_ = data.empty() ? DfuState::manifest_sync : DfuState::download_sync;
+  has_work_ = true;
+  return {};
+}
+
+std::uint32_t DfuDevice::erasures() const noexcept {
+  return block_bytes_ > 0 ? slots_.erasures_before(block_bytes_) : 0;
+}
+
+bool DfuDevice::work() noexcept {
+  if (!has_work_) return false;
+  if (erasures() > 0) {
+    const UpdateStatus erased = slots_.erase_next();
+    if (erased != UpdateStatus::ok) fail(status_of(erased));
+    return has_work_;
+  }
+  has_work_ = false;
+  const UpdateStatus done =
+      block_bytes_ > 0 ? slots_.write(std::span(block_).first(block_bytes_)) : slots_.finish();
+  if (done != UpdateStatus::ok) fail(status_of(done));
+  return false;
+}
+
+std::uint32_t DfuDevice::step_ms() const noexcept {
+  if (!has_work_) return 0;
+  if (erasures() > 0) return times_.erase_ms;
+  return block_bytes_ > 0 ? times_.write_ms : times_.check_ms;
+}
+
+std::uint32_t DfuDevice::poll_ms() const noexcept {
+  if (!has_work_) return 0;
+  return erasures() * times_.erase_ms + (block_bytes_ > 0 ? times_.write_ms : times_.check_ms);
 }
 
 DfuAnswer DfuDevice::upload(std::uint16_t block, std::size_t wanted) noexcept {
@@ -95,11 +124,14 @@ DfuAnswer DfuDevice::upload(std::uint16_t block, std::size_t wanted) noexcept {
 }
 
 DfuAnswer DfuDevice::get_status() noexcept {
-  // Writing is done within the download itself: there is nothing to wait for.
-  if (state_ == DfuState::download_sync) state_ = DfuState::download_idle;
-  if (state_ == DfuState::manifest_sync) static_cast<void>(settle(slots_.finish(), DfuState::idle));
+  if (state_ == DfuState::download_sync || state_ == DfuState::download_busy) {
+    state_ = has_work_ ? DfuState::download_busy : DfuState::download_idle;
+  } else if (state_ == DfuState::manifest_sync || state_ == DfuState::manifest) {
+    state_ = has_work_ ? DfuState::manifest : DfuState::idle;
+  }
   reply_ = {};
-  reply_[0] = static_cast<std::byte>(status_);
+  // The status, and three bytes of poll time behind it.
+  put(reply_, 0, poll_ms() << 8 | static_cast<std::uint32_t>(status_));
   reply_[4] = static_cast<std::byte>(state_);
   return {false, reply_};
 }
@@ -114,14 +146,9 @@ void DfuDevice::bus_reset() noexcept {
   slot_ = 0;
 }
 
-DfuAnswer DfuDevice::settle(UpdateStatus status, DfuState next) noexcept {
-  if (status != UpdateStatus::ok) return fail(status_of(status));
-  state_ = next;
-  return {};
-}
-
 DfuAnswer DfuDevice::fail(DfuStatus status) noexcept {
   slots_.abort();
+  has_work_ = false;
   state_ = DfuState::error;
   status_ = status;
   return {true, {}};
@@ -129,6 +156,7 @@ DfuAnswer DfuDevice::fail(DfuStatus status) noexcept {
 
 void DfuDevice::give_up() noexcept {
   slots_.abort();
+  has_work_ = false;
   state_ = DfuState::idle;
   status_ = DfuStatus::ok;
 }

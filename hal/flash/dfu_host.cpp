@@ -12,11 +12,12 @@
 namespace palpate::hal::flash {
 namespace {
 
-constexpr std::uint32_t kTimeout_ms = 5000;  // the device may erase inside a request
+constexpr std::uint32_t kTimeout_ms = 5000;  // some devices erase inside a request
 constexpr std::uint64_t kNsPerMs = 1'000'000;
-/// Status requests that one step may take; each waits as long as the device asks for.
+/// Status requests that one step may take. Before each the host waits as long as the device states.
 constexpr int kMaxStatusRequests = 1000;
-constexpr std::uint32_t kMaxPoll_ms = 1000;
+/// A device that states more is in no state to be waited for.
+constexpr std::uint32_t kMaxPoll_ms = 600'000;
 constexpr std::size_t kMaxConfigBytes = 1024;
 constexpr std::size_t kMinTransferBytes = 8;
 
@@ -82,7 +83,8 @@ Problem wait_for(Transport& t, Clock& clock, DfuState wanted, const char* phase,
       return problem(phase, where + ": " + text_of(now.status));
     }
     if (now.state == wanted) return std::nullopt;
-    clock.sleep_until(clock.now_ns() + std::min(now.poll_ms, kMaxPoll_ms) * kNsPerMs);
+    if (now.poll_ms > kMaxPoll_ms) break;
+    clock.sleep_until(clock.now_ns() + std::max(now.poll_ms, 1u) * kNsPerMs);
   }
   return problem(phase, where + ": the device does not get ready");
 }

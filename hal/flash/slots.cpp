@@ -96,16 +96,28 @@ UpdateStatus Slots::begin(std::uint8_t slot) noexcept {
   updating_ = kNone;
   if (slot >= kSlots) return UpdateStatus::too_large;
   if (slot == active_) return UpdateStatus::in_use;
-  // The record first: from here on the slot holds no image, however far the rest comes.
-  for (std::uint32_t unit = 0; unit <= layout_.image_units; ++unit) {
-    if (!flash_.erase(offset_of(slot) + unit * layout_.erase_bytes)) {
-      return UpdateStatus::erase_failed;
-    }
-  }
   updating_ = slot;
+  erased_ = 0;
   written_ = 0;
   buffered_ = 0;
   return UpdateStatus::ok;
+}
+
+std::uint32_t Slots::erasures_before(std::size_t bytes) const noexcept {
+  if (updating_ == kNone || bytes > layout_.capacity() - written_) return 0;
+  const std::uint32_t end = written_ + static_cast<std::uint32_t>(bytes);
+  const std::uint32_t needed = 1 + (end + layout_.erase_bytes - 1) / layout_.erase_bytes;
+  return needed > erased_ ? needed - erased_ : 0;
+}
+
+UpdateStatus Slots::erase_next() noexcept {
+  if (updating_ == kNone) return UpdateStatus::not_begun;
+  if (flash_.erase(offset_of(updating_) + erased_ * layout_.erase_bytes)) {
+    ++erased_;
+    return UpdateStatus::ok;
+  }
+  abort();
+  return UpdateStatus::erase_failed;
 }
 
 UpdateStatus Slots::write(std::span<const std::byte> bytes) noexcept {
@@ -113,6 +125,10 @@ UpdateStatus Slots::write(std::span<const std::byte> bytes) noexcept {
   if (bytes.size() > layout_.capacity() - written_) {
     abort();
     return UpdateStatus::too_large;
+  }
+  while (erasures_before(bytes.size()) > 0) {
+    const UpdateStatus erased = erase_next();
+    if (erased != UpdateStatus::ok) return erased;
   }
   while (!bytes.empty()) {
     // Whole units go from where they are; the buffer is for what a block leaves over.

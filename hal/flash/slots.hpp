@@ -107,9 +107,14 @@ class Slots {
   /// is_signed_by() where there is a key.
   [[nodiscard]] SlotState state(std::uint8_t slot) const noexcept;
 
-  /// Erases a slot for an update. Aborts one that is under way.
+  /// Begins an update of a slot. Aborts one that is under way.
   UpdateStatus begin(std::uint8_t slot) noexcept;
-  /// Appends bytes of the image.
+  /// Erase units that are erased before so many more bytes of the update can be written: the record
+  /// first, so that the slot holds no image any more.
+  [[nodiscard]] std::uint32_t erasures_before(std::size_t bytes) const noexcept;
+  /// Erases the next of them.
+  UpdateStatus erase_next() noexcept;
+  /// Appends bytes of the image; erases what has to be and is not yet.
   UpdateStatus write(std::span<const std::byte> bytes) noexcept;
   /// Proves what was written and commits it. The slot is used from the next start on.
   UpdateStatus finish() noexcept;
@@ -137,6 +142,7 @@ class Slots {
   std::uint8_t active_ = kNone;
   std::uint64_t active_counter_ = 0;  ///< of its signature
   std::uint8_t updating_ = kNone;
+  std::uint32_t erased_ = 0;   ///< erase units of the update's slot, from its record on
   std::uint32_t written_ = 0;  ///< bytes of the update taken so far, with those in the buffer
   std::size_t buffered_ = 0;
   std::array<std::byte, kProgramBytes> buffer_{};

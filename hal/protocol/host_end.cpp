@@ -46,6 +46,26 @@ std::uint32_t faults_of(const State& s) {
 
 }  // namespace
 
+void Obedience::judge(const State& reading, std::uint64_t time_ns,
+                      std::uint64_t arrival_ns) noexcept {
+  const bool has_taken_more = reading.answered != 0 && is_after(reading.answered, answered_) &&
+                              !is_after(reading.answered, asked_);
+  const bool takes = reading.answered == asked_ || has_taken_more;
+  answered_ = reading.answered;
+  // The other modes say themselves why there is no force.
+  const bool may_render = reading.mode == Mode::active || reading.mode == Mode::idle;
+  if (!asking_ || !may_render) return;
+  if (takes && reading.mode == Mode::active) {
+    waiting_ = false;
+    refused_ = reading.refused;
+  } else if (!waiting_) {
+    waiting_ = true;
+    since_ns_ = arrival_ns;
+  } else if (fault_ == kNoDeviceFault && time_ns > since_ns_ + kWithin_ns) {
+    fault_ = reading.refused != refused_ ? kDeviceRefuses : takes ? kDeviceIdle : kDeviceIgnores;
+  }
+}
+
 bool HostEnd::receive(std::span<const std::byte> packet, std::uint64_t arrival_ns,
                       DeviceState& out) noexcept {
   State s;
@@ -71,7 +91,8 @@ bool HostEnd::receive(std::span<const std::byte> packet, std::uint64_t arrival_n
   out.sequence = sequence_;
   out.time_ns = time_ns;
   out.buttons = s.buttons;
-  out.faults = faults_of(s);
+  obedience_.judge(s, time_ns, arrival_ns);
+  out.faults = faults_of(s) | obedience_.fault();
   homing_ = out.homing = s.mode == Mode::homing;
   if (homing_) return true;
   out.pose = s.is_joint_state ? chain_.pose(s.joint_counts)
@@ -88,6 +109,7 @@ Packet HostEnd::command(const DeviceCommand& command, std::uint64_t now_ns) noex
   if (left_us == 0) return no_force();
   Command c;
   c.sequence = ++commands_;
+  obedience_.asked(c.sequence);
   c.life_us =
       static_cast<std::uint32_t>(std::min<std::uint64_t>(left_us, capabilities_.max_life_us));
   c.enable = true;
@@ -111,6 +133,7 @@ Packet HostEnd::command(const DeviceCommand& command, std::uint64_t now_ns) noex
 }
 
 Packet HostEnd::no_force() noexcept {
+  obedience_.released();
   Command c;
   c.is_joint_command = chain_.joints() > 0;
   c.sequence = ++commands_;

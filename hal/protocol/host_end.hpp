@@ -21,6 +21,39 @@ struct LinkCounters {
   std::uint64_t outdated = 0;  ///< repeated or overtaken
 };
 
+/// Whether a device does as it is told. One that is asked for a force and renders none, for longer
+/// than kWithin_ns, is a fault for the rest of the session: the hand feels nothing of what the host
+/// takes to be there.
+class Obedience {
+ public:
+  /// With the way of a reading and a tick of the loop less than 50 ms.
+  static constexpr std::uint64_t kWithin_ns = 40'000'000;
+
+  /// A command that asks for a force has left.
+  void asked(std::uint32_t sequence) noexcept {
+    asking_ = true;
+    asked_ = sequence;
+  }
+  /// Nobody asks for a force any more.
+  void released() noexcept { asking_ = waiting_ = false; }
+
+  /// The time counts from the arrival of the first reading that shows no force to the taking of a
+  /// later one: neither a host that stood still nor readings that were held up look like a fault.
+  void judge(const State& reading, std::uint64_t time_ns, std::uint64_t arrival_ns) noexcept;
+
+  /// One of kDeviceRefuses, kDeviceIgnores and kDeviceIdle, or none.
+  [[nodiscard]] std::uint32_t fault() const noexcept { return fault_; }
+
+ private:
+  bool asking_ = false;
+  bool waiting_ = false;  ///< for a reading that shows what was asked for
+  std::uint64_t since_ns_ = 0;
+  std::uint32_t asked_ = 0;     ///< sequence of the last command
+  std::uint32_t answered_ = 0;  ///< in the newest reading
+  std::uint32_t refused_ = 0;   ///< when the device last did as it was told
+  std::uint32_t fault_ = kNoDeviceFault;
+};
+
 class HostEnd {
  public:
   /// @param chain  of a device with joints; without joints for one that sends poses
@@ -28,8 +61,8 @@ class HostEnd {
       : capabilities_(capabilities), chain_(chain) {}
 
   /// A packet that has come in. True, and `out` written, where it is a newer reading; while the
-  /// device is homing its pose is left at the origin. Packets that are refused or outdated are
-  /// counted.
+  /// device is homing its pose is left at the origin. Its faults hold what the device says of
+  /// itself, and whether it does as it is told. Packets that are refused or outdated are counted.
   /// @param arrival_ns  host clock; never runs backwards
   [[nodiscard]] bool receive(std::span<const std::byte> packet, std::uint64_t arrival_ns,
                              DeviceState& out) noexcept;
@@ -51,6 +84,7 @@ class HostEnd {
   JointCounts counts_{};  ///< of the newest reading
   ClockMap clock_map_;
   LinkCounters counters_;
+  Obedience obedience_;
   bool homing_ = false;              ///< in the newest reading
   std::uint32_t last_sequence_ = 0;  ///< on the wire; 0: none yet
   std::uint64_t last_device_ns_ = 0;

@@ -16,6 +16,7 @@ using namespace protocol;
 
 constexpr double kMicro = 1e-6;
 constexpr std::uint16_t kUpdateInterface = 1;
+constexpr std::uint64_t kNsPerMs = 1'000'000;
 
 std::int32_t nanometres(double m) { return static_cast<std::int32_t>(std::lround(1e9 * m)); }
 std::int32_t quaternion_unit(double c) {
@@ -64,8 +65,19 @@ OpenDevice::OpenDevice(OpenDeviceOptions options)
 
 void OpenDevice::advance_to(std::uint64_t now_ns) {
   if (next_ns_ == 0) start_ns_ = next_ns_ = now_ns;
-  for (; next_ns_ <= now_ns; next_ns_ += period_ns_) period(next_ns_);
+  for (; next_ns_ <= now_ns; next_ns_ += period_ns_) {
+    if (back_ns_ != 0 && next_ns_ >= back_ns_) restart();
+    period(next_ns_);
+  }
   now_ns_ = now_ns;
+  work_on_flash();
+}
+
+void OpenDevice::work_on_flash() {
+  while (dfu_ && dfu_->has_work() && flash_ns_ <= now_ns_) {
+    dfu_->work();
+    flash_ns_ += dfu_->step_ms() * kNsPerMs;
+  }
 }
 
 void OpenDevice::period(std::uint64_t now_ns) {
@@ -87,7 +99,7 @@ void OpenDevice::period(std::uint64_t now_ns) {
                        quaternion_unit(q.z)};
   end_.stamp(state);
   // One that was not fetched is replaced: the host gets the newest.
-  if (!silent_) ready_ = encode(state);
+  if (!silent_ && back_ns_ == 0) ready_ = encode(state);
 }
 
 flash::SlotRules OpenDevice::rules() const noexcept {
@@ -149,7 +161,7 @@ IoResult OpenDevice::vendor_out(const ControlRequest& request) {
   const bool is_session = request.request == static_cast<std::uint8_t>(Request::session);
   const bool is_restart = request.request == static_cast<std::uint8_t>(Request::restart);
   if (is_restart && !in_session_) {
-    restart();
+    leave_bus();
   } else if (is_session && request.value == 1) {
     in_session_ = true;
     end_.begin_session();
@@ -165,8 +177,10 @@ IoResult OpenDevice::vendor_out(const ControlRequest& request) {
 IoResult OpenDevice::update(const ControlRequest& request, std::span<const std::byte> data,
                             std::span<std::byte> out) {
   if (!dfu_) return {IoStatus::stalled};
+  const bool had_work = dfu_->has_work();
   const flash::DfuAnswer answer =
       dfu_->handle({flash::DfuRequest{request.request}, request.value}, data, out.size());
+  if (!had_work) flash_ns_ = now_ns_ + dfu_->step_ms() * kNsPerMs;
   if (dfu_->busy()) end_.end_session();
   if (answer.stall) return {IoStatus::stalled};
   const std::size_t length = std::min(answer.bytes.size(), out.size());
@@ -180,11 +194,21 @@ void OpenDevice::bus_reset() {
   if (dfu_) dfu_->bus_reset();
 }
 
+/// Its restart begins; this request is still answered.
+void OpenDevice::leave_bus() {
+  if (options_.restart_ns == 0) return restart();
+  bus_reset();
+  ready_.reset();
+  back_ns_ = now_ns_ + options_.restart_ns;
+  ++times_left_;
+}
+
 void OpenDevice::restart() {
   bus_reset();
+  back_ns_ = 0;
   if (options_.flash == nullptr) return;
   slots_.emplace(*options_.flash, options_.layout, rules());
-  dfu_.emplace(*slots_);
+  dfu_.emplace(*slots_, options_.flash_times);
   const bool holds_image = slots_->start() != flash::kNone && slots_->confirm();
   end_.set_health(holds_image ? kHealthy : kNoImage);
 }

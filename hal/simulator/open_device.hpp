@@ -21,9 +21,12 @@ struct OpenDeviceOptions {
   /// Its flash, which outlives it; null: it holds no images.
   flash::FlashMemory* flash = nullptr;
   flash::SlotLayout layout;
+  flash::FlashTimes flash_times;  ///< what its flash takes, in its own time
   /// The public key that images must be signed for; absent: none
   std::optional<signature::PublicKey> key;
   std::string serial = "SIM0001";
+  /// How long a restart keeps it off the bus; 0: it stays, which the protocol does not allow.
+  std::uint64_t restart_ns = 100'000'000;
   /// stuck and drift, from its first period on
   mock::Faults sensor_faults;
 
@@ -37,6 +40,7 @@ class OpenDevice : public SimulatedDevice {
   [[nodiscard]] const UsbDescriptors& descriptors() const override { return descriptors_; }
   void advance_to(std::uint64_t now_ns) override;
   [[nodiscard]] std::uint64_t next_event_ns() const override { return next_ns_; }
+  [[nodiscard]] Presence presence() const override { return {back_ns_ == 0, times_left_}; }
   IoResult control_in(const ControlRequest& request, std::span<std::byte> out) override;
   IoResult control_out(const ControlRequest& request, std::span<const std::byte> data) override;
   void out(std::span<const std::byte> bytes) override;
@@ -61,6 +65,8 @@ class OpenDevice : public SimulatedDevice {
 
  private:
   void period(std::uint64_t now_ns);
+  void work_on_flash();
+  void leave_bus();
   [[nodiscard]] flash::SlotRules rules() const noexcept;
   [[nodiscard]] protocol::ImageIdentity identity() const;
   IoResult vendor_in(const ControlRequest& request, std::span<std::byte> out);
@@ -76,6 +82,8 @@ class OpenDevice : public SimulatedDevice {
   std::uint64_t start_ns_ = 0;
   std::uint64_t next_ns_ = 0;  ///< 0: not begun
   std::uint64_t now_ns_ = 0;
+  std::uint64_t back_ns_ = 0;  ///< when a restart is over; 0: none is under way
+  std::uint32_t times_left_ = 0;
   std::uint64_t periods_ = 0;
   std::uint64_t periods_with_force_ = 0;
   bool silent_ = false;
@@ -85,6 +93,7 @@ class OpenDevice : public SimulatedDevice {
   bool in_session_ = false;
   std::optional<flash::Slots> slots_;
   std::optional<flash::DfuDevice> dfu_;
+  std::uint64_t flash_ns_ = 0;  ///< when the step of its flash that is under way is over
 };
 
 }  // namespace palpate::hal::simulator

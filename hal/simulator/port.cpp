@@ -12,7 +12,16 @@ constexpr std::uint64_t kNsPerMs = 1'000'000;
 }  // namespace
 
 Port::Port(SimulatedDevice& device, Clock& clock, PortFaults faults)
-    : device_(device), clock_(clock), faults_(std::move(faults)), start_ns_(clock.now_ns()) {}
+    : device_(device),
+      clock_(clock),
+      faults_(std::move(faults)),
+      start_ns_(clock.now_ns()),
+      times_left_(device.presence().times_left),
+      lost_(false) {
+  if (device.presence().on_bus) return;
+  device.advance_to(start_ns_);
+  lost_ = !device.presence().on_bus;
+}
 
 IoResult Port::control_in(const ControlRequest& request, std::span<std::byte> out,
                           std::uint32_t /*timeout_ms*/) {
@@ -108,6 +117,7 @@ void Port::live_to(std::uint64_t now_ns) {
     device_.bus_reset();
   }
   device_.advance_to(now_ns);
+  lost_ = lost_ || device_.presence().times_left != times_left_;
   if (lost_) return;
   while (const auto transfer = out_line_.pop(now_ns)) {
     device_.out(std::span(transfer->bytes).first(transfer->length));

@@ -25,7 +25,8 @@ class Port final : public Transport {
   static constexpr std::size_t kMaxTransferBytes = 512;
   static constexpr std::size_t kOutTransfers = 4;
 
-  /// Device and clock must outlive this.
+  /// Device and clock must outlive this. Lost for good where the device is off the bus, or leaves
+  /// it later.
   Port(SimulatedDevice& device, Clock& clock, PortFaults faults = {});
 
   [[nodiscard]] std::uint8_t interface_number() const noexcept override { return interface_; }
@@ -62,8 +63,9 @@ class Port final : public Transport {
   Clock& clock_;
   PortFaults faults_;
   std::uint64_t start_ns_;
+  std::uint32_t times_left_;  ///< by the device when this was plugged in
   std::uint8_t interface_ = 0;
-  bool lost_ = false;
+  bool lost_;
   bool hold_out_ = false;
   std::size_t pending_ = 0;
   mock::FaultyLine<Transfer> in_line_;

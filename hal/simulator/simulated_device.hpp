@@ -11,6 +11,13 @@
 
 namespace palpate::hal::simulator {
 
+/// Whether a device is there. It leaves by itself when it restarts: whoever had it open has lost it
+/// then, and opens it again once it is back.
+struct Presence {
+  bool on_bus = true;
+  std::uint32_t times_left = 0;  ///< how often it has left by itself
+};
+
 class SimulatedDevice {
  public:
   virtual ~SimulatedDevice() = default;
@@ -27,6 +34,8 @@ class SimulatedDevice {
   virtual void advance_to(std::uint64_t now_ns) = 0;
   /// When in() may have something next, if nothing else happens.
   [[nodiscard]] virtual std::uint64_t next_event_ns() const = 0;
+
+  [[nodiscard]] virtual Presence presence() const { return {}; }
 
   virtual IoResult control_in(const ControlRequest& request, std::span<std::byte> out) = 0;
   virtual IoResult control_out(const ControlRequest& request, std::span<const std::byte> data) = 0;

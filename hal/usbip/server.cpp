@@ -60,6 +60,11 @@ Server::Server(simulator::SimulatedDevice& device, Clock& clock, const std::stri
 
 void Server::adopt(int fd) { clients_.emplace_back(fd, exported_); }
 
+void Server::adopt_owner(int fd) {
+  adopt(fd);
+  clients_.back().session.take();
+}
+
 void Server::accept_all() {
   while (true) {
     const int fd = ::accept4(listener_.fd(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
@@ -102,8 +107,16 @@ void Server::live() {
   for (Client& client : clients_) client.session.serve();
 }
 
+void Server::close_after_departure() {
+  const std::uint32_t times = exported_.device.presence().times_left;
+  if (times == times_left_) return;
+  times_left_ = times;
+  clients_.remove_if([](const Client& client) { return client.session.attached(); });
+}
+
 void Server::step(std::uint64_t until_ns) {
   live();
+  close_after_departure();
   for (auto client = clients_.begin(); client != clients_.end();) {
     client = write_to(*client) ? std::next(client) : clients_.erase(client);
   }

@@ -52,6 +52,9 @@ class Server {
   /// Takes over a socket that is connected already.
   void adopt(int fd);
 
+  /// The same, of a client that has the device from now on and does not ask for it.
+  void adopt_owner(int fd);
+
   /// A client has taken the device.
   [[nodiscard]] bool attached() const noexcept { return exported_.taken; }
 
@@ -66,11 +69,14 @@ class Server {
   [[nodiscard]] bool read_from(Client& client);
   [[nodiscard]] static bool write_to(Client& client);
   void live();
+  /// A device that leaves its bus is gone for who has it.
+  void close_after_departure();
 
   Clock& clock_;
   ExportedDevice exported_;
   Socket listener_;
   std::uint16_t port_ = 0;
+  std::uint32_t times_left_ = 0;  ///< what the device says
   std::list<Client> clients_;
 };
 

@@ -58,22 +58,26 @@ std::size_t Session::take_operation(std::span<const std::byte> bytes) {
 }
 
 void Session::list() {
-  // A device that is taken is not to be had, and so not listed.
-  const std::byte devices{static_cast<std::uint8_t>(exported_.taken ? 0 : 1)};
+  const bool listed = exported_.to_be_had();
+  const std::byte devices{static_cast<std::uint8_t>(listed ? 1 : 0)};
   say(encode(Operation{kVersion, Code::list_reply, 0}));
   say(std::array{std::byte{0}, std::byte{0}, std::byte{0}, devices});
-  if (!exported_.taken) say(describe(exported_.device.descriptors(), true));
+  if (listed) say(describe(exported_.device.descriptors(), true));
 }
 
 void Session::import(std::span<const std::byte> bus_id) {
-  if (exported_.taken || !is_bus_id(bus_id)) {
+  if (!exported_.to_be_had() || !is_bus_id(bus_id)) {
     say(encode(Operation{kVersion, Code::import_reply, kRefused}));
     return;
   }
-  exported_.taken = attached_ = true;
-  exported_.device.bus_reset();
+  take();
   say(encode(Operation{kVersion, Code::import_reply, 0}));
   say(describe(exported_.device.descriptors(), false));
+}
+
+void Session::take() {
+  exported_.taken = attached_ = true;
+  exported_.device.bus_reset();
 }
 
 std::size_t Session::take_transfer(std::span<const std::byte> bytes) {

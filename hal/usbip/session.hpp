@@ -13,10 +13,11 @@
 
 namespace palpate::hal::usbip {
 
-/// A device that clients may take, one at a time.
+/// A device that clients may take, one at a time, while it is on its bus.
 struct ExportedDevice {
   simulator::SimulatedDevice& device;
   bool taken = false;
+  [[nodiscard]] bool to_be_had() const { return !taken && device.presence().on_bus; }
 };
 
 class Session {
@@ -35,6 +36,9 @@ class Session {
   /// Bytes of the client, cut anywhere. False where they break the protocol or ask for more than
   /// the limits above: the connection is to be closed. The device must have lived up to now.
   [[nodiscard]] bool receive(std::span<const std::byte> bytes);
+
+  /// This client takes the device now, whatever it has said.
+  void take();
 
   /// Answers waiting IN transfers with what the device has ready.
   void serve();

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Linux usbfs for one simulated device, inside the process of its user: the real libusb talks to it
 // through a file descriptor whose system calls are answered here (usbfs_calls.cpp where it is
-// linked in, usbfs_shim.cpp where it is preloaded). What it leaves out: bandwidth, and the kernel's
-// checks of requests.
-//
-// libusb is given the writing end of a pipe of one page. While the pipe is full there is nothing to
-// reap; drained, it is ready for writing, which is how usbfs says that a transfer has completed;
-// with the reading end closed it reports an error, which is how usbfs says that the device is gone.
+// linked in, usbfs_shim.cpp where it is preloaded). It refuses what the kernel refuses: an
+// interface that another file has claimed, endpoints and interfaces that are not there, requests
+// longer than their buffer. What it leaves out: bandwidth.
 #pragma once
 
 #include <libusb-1.0/libusb.h>
@@ -14,22 +11,20 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
 
 #include "hal/clock.hpp"
 #include "hal/simulator/simulated_device.hpp"
-
-struct usbdevfs_urb;
+#include "usbfs_file.hpp"
 
 namespace palpate::hal::test {
 
-/// At most kMost at a time. The device lives on a thread of its own, on the real clock.
+/// The device lives on a thread of its own, on the real clock.
 class EmulatedUsbfs {
  public:
-  static constexpr std::size_t kMost = 4;
-
   explicit EmulatedUsbfs(simulator::SimulatedDevice& device);
   ~EmulatedUsbfs();
   EmulatedUsbfs(const EmulatedUsbfs&) = delete;
@@ -37,8 +32,11 @@ class EmulatedUsbfs {
   EmulatedUsbfs(EmulatedUsbfs&&) = delete;
   EmulatedUsbfs& operator=(EmulatedUsbfs&&) = delete;
 
-  /// For libusb_wrap_sys_device().
-  [[nodiscard]] int descriptor() const noexcept { return pipe_[1]; }
+  /// A file of its own for each call, for libusb_wrap_sys_device(); a negative errno while the
+  /// device is not on the bus. What is not closed ends with this.
+  [[nodiscard]] int open();
+  /// Gives up the file's claims and transfers.
+  void close(int fd);
 
   void unplug();
   /// The plug is pulled when one transfer more than these is submitted.
@@ -63,9 +61,9 @@ class EmulatedUsbfs {
   [[nodiscard]] int halts_cleared();
 
   // The system calls.
-  int on_ioctl(unsigned long request, void* argument);
-  long on_read(void* out, std::size_t bytes);
-  long on_seek(long offset);
+  int on_ioctl(int fd, unsigned long request, void* argument);
+  long on_read(int fd, void* out, std::size_t bytes);
+  long on_seek(int fd, long offset);
 
  private:
   struct Failure {
@@ -73,29 +71,38 @@ class EmulatedUsbfs {
     int error;
     int times;
   };
+  struct Transfer {
+    usbdevfs_urb* urb;
+    UsbfsFile* file;
+  };
   void live();
   void serve();
   void pull_plug();
-  int submit(usbdevfs_urb* urb);
-  int discard(usbdevfs_urb* urb);
-  int reap(usbdevfs_urb** out);
-  void control(usbdevfs_urb* urb);
-  void complete(usbdevfs_urb* urb, int status, int length);
-  void signal(bool something_to_reap);
+  [[nodiscard]] UsbfsFile* file_of(int fd);
+  int request_of(UsbfsFile& file, unsigned long request, void* argument);
+  int claim(UsbfsFile& file, unsigned interface);
+  int claim_for_endpoint(UsbfsFile& file, std::uint8_t address);
+  int claim_for_control(UsbfsFile& file, const std::byte* setup);
+  int set_alternate(UsbfsFile& file, unsigned interface, int setting);
+  int submit(UsbfsFile& file, usbdevfs_urb* urb);
+  int discard(UsbfsFile& file, usbdevfs_urb* urb);
+  static int reap(UsbfsFile& file, usbdevfs_urb** out);
+  void control(const Transfer& transfer);
+  void cancel_all(const UsbfsFile& file, int status);
+  static void complete(const Transfer& transfer, int status, int length);
   [[nodiscard]] int failure_of(std::uint8_t endpoint);
 
   simulator::SimulatedDevice& device_;
   std::vector<std::uint8_t> descriptors_;
-  std::size_t read_at_ = 0;
-  int pipe_[2] = {-1, -1};
-  bool signalled_ = true;  ///< the pipe is drained
   std::mutex mutex_;
-  std::deque<usbdevfs_urb*> in_, out_, held_, done_;
+  std::vector<std::unique_ptr<UsbfsFile>> files_;
+  std::deque<Transfer> in_, out_, held_;
   std::vector<Failure> failures_;
   bool hold_out_ = false;
   bool hold_control_ = false;
   bool unplugged_ = false;
-  int submissions_left_ = -1;  ///< until the plug is pulled; below 0: never
+  std::uint32_t times_left_ = 0;  ///< what the device says
+  int submissions_left_ = -1;     ///< until the plug is pulled; below 0: never
   int claim_result_ = 0;
   int halts_cleared_ = 0;
   MonotonicClock clock_;

@@ -20,18 +20,18 @@ int ioctl(int fd, unsigned long request, ...) noexcept {
   void* argument = va_arg(arguments, void*);
   va_end(arguments);
   if (auto* usbfs = usbfs_of(fd)) {
-    return static_cast<int>(with_errno(usbfs->on_ioctl(request, argument)));
+    return static_cast<int>(with_errno(usbfs->on_ioctl(fd, request, argument)));
   }
   return static_cast<int>(::syscall(SYS_ioctl, fd, request, argument));
 }
 
 ssize_t read(int fd, void* out, std::size_t bytes) {
-  if (auto* usbfs = usbfs_of(fd)) return usbfs->on_read(out, bytes);
+  if (auto* usbfs = usbfs_of(fd)) return usbfs->on_read(fd, out, bytes);
   return ::syscall(SYS_read, fd, out, bytes);
 }
 
 off_t lseek(int fd, off_t offset, int whence) noexcept {
-  if (auto* usbfs = usbfs_of(fd)) return usbfs->on_seek(offset);
+  if (auto* usbfs = usbfs_of(fd)) return usbfs->on_seek(fd, offset);
   return ::syscall(SYS_lseek, fd, offset, whence);
 }
 

@@ -3,15 +3,19 @@
 // /dev/bus/usb/001/002 reaches the first one, 003 the second; that there are such devices must come
 // from elsewhere (umockdev). PALPATE_SHIM_DEVICES has a word for each, with colons between: the
 // file of its flash, or "denied" (nobody may open it), "busy" (another program has it), "version"
-// (it speaks another version of the protocol). PALPATE_SHIM_KEY may name a file with the 32 bytes
-// of the public key that images must be signed for.
+// (it speaks another version of the protocol). Before a file may stand "stays=" (it restarts
+// without leaving the bus), or what happens once it has rendered a force for a while: "unplugged=",
+// "motor=" or "refuses=". PALPATE_SHIM_KEY may name a file with the 32 bytes of the public key that
+// images must be signed for.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/ioctl.h>
+#include <sys/mman.h>
 #include <sys/types.h>
 
 #include <cerrno>
 #include <cstdarg>
+#include <cstdio>
 #include <cstdlib>
 #include <deque>
 #include <fstream>
@@ -19,6 +23,7 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "emulated_usbfs.hpp"
@@ -30,6 +35,8 @@ namespace {
 
 constexpr std::string_view kNodes = "/dev/bus/usb/001/00";
 constexpr int kFirstNode = 2;
+/// Periods with a force before something happens to a device.
+constexpr std::uint64_t kUntilTrouble = 100;
 
 /// Says that it speaks another version of the protocol.
 class Foreigner final : public simulator::OpenDevice {
@@ -42,6 +49,39 @@ class Foreigner final : public simulator::OpenDevice {
   }
 };
 
+/// Something happens to it while it renders.
+class Troubled final : public simulator::OpenDevice {
+ public:
+  Troubled(simulator::OpenDeviceOptions options, std::string trouble)
+      : OpenDevice(std::move(options)), trouble_(std::move(trouble)) {}
+  void advance_to(std::uint64_t now_ns) override {
+    OpenDevice::advance_to(now_ns);
+    if (happened_ || periods_with_force() < kUntilTrouble) return;
+    happened_ = true;
+    if (trouble_ == "motor") set_health(protocol::kMotorFailure);
+    if (trouble_ == "refuses") bus_reset();  // its session is over
+    gone_ = trouble_ == "unplugged";
+  }
+  [[nodiscard]] simulator::Presence presence() const override {
+    return gone_ ? simulator::Presence{false, 1} : OpenDevice::presence();
+  }
+
+ private:
+  std::string trouble_;
+  bool happened_ = false;
+  bool gone_ = false;
+};
+
+/// "WHAT=FILE", or "FILE".
+struct Word {
+  explicit Word(const std::string& text) {
+    const std::size_t equals = text.find('=');
+    if (equals != std::string::npos) what = text.substr(0, equals);
+    file = equals == std::string::npos ? text : text.substr(equals + 1);
+  }
+  std::string what, file;
+};
+
 /// The 32 bytes of the file named by PALPATE_SHIM_KEY; absent where none is named.
 std::optional<signature::PublicKey> key() {
   const char* file = std::getenv("PALPATE_SHIM_KEY");
@@ -52,11 +92,12 @@ std::optional<signature::PublicKey> key() {
 }
 
 struct Shim {
-  Shim(const std::string& flash_file, const std::string& serial)
-      : flash(flash_file, layout), model(options(serial)), usbfs(model) {}
+  Shim(const Word& word, const std::string& serial)
+      : flash(word.file, layout), model(options(word, serial), word.what), usbfs(model) {}
 
-  simulator::OpenDeviceOptions options(const std::string& serial) {
+  simulator::OpenDeviceOptions options(const Word& word, const std::string& serial) {
     simulator::OpenDeviceOptions out;
+    if (word.what == "stays") out.restart_ns = 0;
     out.flash = &flash;
     out.layout = layout;
     out.key = key();
@@ -72,7 +113,7 @@ struct Shim {
 
   flash::SlotLayout layout{4096, 64};
   flash::FileFlash flash;
-  simulator::OpenDevice model;
+  Troubled model;
   EmulatedUsbfs usbfs;
 };
 
@@ -107,21 +148,33 @@ Bus make_bus() {
     } else if (word == "busy" || word == "version") {
       bus.ports.push_back(&bus.unusable.emplace_back(serial, word == "busy" ? -EBUSY : 0).usbfs);
     } else {
-      bus.ports.push_back(&bus.usable.emplace_back(word, serial).usbfs);
+      bus.ports.push_back(&bus.usable.emplace_back(Word(word), serial).usbfs);
     }
   }
   return bus;
 }
 
-/// The descriptor of a node of ours, or a negative errno; absent where it is not ours. The devices
-/// are made when one is opened first, and live as long as the process.
+/// The devices are made when one is opened first, and live as long as the process.
+Bus& bus() {
+  static Bus the_bus = make_bus();
+  return the_bus;
+}
+
+/// A device still renders a force.
+bool any_renders() {
+  for (Shim& shim : bus().usable) {
+    if (shim.usbfs.look([&] { return norm(shim.model.rendered().force_N) > 0; })) return true;
+  }
+  return false;
+}
+
+/// The descriptor of a node of ours, or a negative errno; absent where it is not ours.
 std::optional<int> open_node(std::string_view path) {
   if (path.substr(0, kNodes.size()) != kNodes) return std::nullopt;
-  static const Bus kBus = make_bus();
   const int index = std::atoi(path.substr(kNodes.size()).data()) - kFirstNode;
-  if (index < 0 || index >= static_cast<int>(kBus.ports.size())) return -ENODEV;
-  EmulatedUsbfs* port = kBus.ports[static_cast<std::size_t>(index)];
-  return port == nullptr ? -EACCES : port->descriptor();
+  if (index < 0 || index >= static_cast<int>(bus().ports.size())) return -ENODEV;
+  EmulatedUsbfs* port = bus().ports[static_cast<std::size_t>(index)];
+  return port == nullptr ? -EACCES : port->open();
 }
 
 template <class Function>
@@ -161,9 +214,19 @@ int __open64_2(const char* path, int flags);
 int __open_2(const char* path, int flags) { return open(path, flags); }
 int __open64_2(const char* path, int flags) { return open64(path, flags); }
 
+/// Unlocking memory takes long where there is much of it: no force may wait for that.
+int munlockall() noexcept {
+  if (palpate::hal::test::any_renders()) {
+    std::fputs("shim: memory is unlocked while a device renders a force\n", stderr);
+  }
+  return palpate::hal::test::next<int()>("munlockall")();
+}
+
 int close(int fd) {
-  // Whoever opens the device again gets the same descriptor.
-  if (palpate::hal::test::usbfs_of(fd) != nullptr) return 0;
+  if (auto* usbfs = palpate::hal::test::usbfs_of(fd)) {
+    usbfs->close(fd);
+    return 0;
+  }
   return palpate::hal::test::next<int(int)>("close")(fd);
 }
 
@@ -173,7 +236,7 @@ int ioctl(int fd, unsigned long request, ...) noexcept {
   void* argument = va_arg(arguments, void*);
   va_end(arguments);
   if (auto* usbfs = palpate::hal::test::usbfs_of(fd)) {
-    return static_cast<int>(palpate::hal::test::with_errno(usbfs->on_ioctl(request, argument)));
+    return static_cast<int>(palpate::hal::test::with_errno(usbfs->on_ioctl(fd, request, argument)));
   }
   return palpate::hal::test::next<int(int, unsigned long, void*)>("ioctl")(fd, request, argument);
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-palpate_test(cli_test SOURCES unit/cli_clocks.cpp unit/cli_output_file.cpp unit/cli_poses.cpp unit/cli_stable_scene.cpp
+palpate_test(cli_test SOURCES unit/cli_clocks.cpp unit/cli_fault_words.cpp unit/cli_output_file.cpp unit/cli_poses.cpp unit/cli_stable_scene.cpp
   unit/cli_surface_points.cpp LIBS palpate_cli)
 
 # These run the executable.

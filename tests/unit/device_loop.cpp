@@ -3,8 +3,11 @@
 // query to the encoders but the kernel and the engine.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include "../support/simulated_rig.hpp"
 #include "../support/virtual_loop.hpp"
@@ -164,6 +167,27 @@ TEST(DeviceLoop, unplugging_is_a_device_error_at_once) {
   EXPECT_EQ(norm(model.rendered().force_N), 0.0);
 }
 
+TEST(DeviceLoop, report_says_what_the_device_said_and_in_which_tick) {
+  OpenDevice model(pressing());
+  OpenLoop rig(model, seconds_of(2), faults_of({{FaultKind::unplug, 1.5, 100, 0, 1}}));
+  const LoopReport& report = rig.run();
+  EXPECT_EQ(report.device_faults, hal::kDeviceLost);
+  EXPECT_NEAR(static_cast<double>(report.device_fault_ticks[0]), 1500, 3);
+  EXPECT_EQ(report.fault_ticks[static_cast<std::size_t>(Fault::device_error)],
+            report.device_fault_ticks[0]);
+}
+
+TEST(DeviceLoop, last_tick_leaves_no_force_two_periods_later) {
+  OpenDevice model(pressing());
+  OpenLoop rig(model, seconds_of(1.5));
+  double last_N = 0;
+  rig.pumped.each_step = [&] { last_N = norm(model.rendered().force_N); };
+  EXPECT_EQ(rig.run().state, LoopState::rendering);
+  EXPECT_GT(last_N, 0.5);
+  rig.pumped.sleep_until(rig.clock.now_ns() + 2 * kMs);
+  EXPECT_EQ(norm(model.rendered().force_N), 0.0);
+}
+
 TEST(DeviceLoop, silent_device_is_a_stale_state) {
   OpenDevice model(pressing());
   OpenLoop rig(model, seconds_of(2));
@@ -186,6 +210,68 @@ TEST(DeviceLoop, commands_that_do_not_arrive_are_a_device_error) {
   const LoopReport& report = rig.run();
   EXPECT_TRUE(report.faults.has(Fault::device_error));
   EXPECT_EQ(model.mode(), hal::protocol::Mode::expired);
+}
+
+/// Does as it is told until a time; what it does then is given.
+class Disobedient final : public OpenDevice {
+ public:
+  enum class How : std::uint8_t { refuses, ignores, idles };
+  explicit Disobedient(How how) : OpenDevice(pressing()), how_(how) {}
+  /// From now on.
+  void begin() {
+    begun_ = true;
+    if (how_ == How::refuses) bus_reset();  // its session is over
+  }
+  void out(std::span<const std::byte> bytes) override {
+    if (begun_ && how_ == How::ignores) return;
+    OpenDevice::out(bytes);
+  }
+  std::size_t in(std::span<std::byte> buffer) override {
+    const std::size_t length = OpenDevice::in(buffer);
+    hal::protocol::State state;
+    if (!begun_ || length == 0 ||
+        hal::protocol::decode(buffer.first(length), state) != hal::protocol::PacketError::none) {
+      return length;
+    }
+    // One that ignores says what it did when it still listened.
+    if (how_ == How::ignores) state.mode = hal::protocol::Mode::active;
+    if (how_ == How::idles) state.mode = hal::protocol::Mode::idle;
+    const auto packet = encode(state);
+    std::copy(packet.begin(), packet.end(), buffer.begin());
+    return length;
+  }
+
+ private:
+  How how_;
+  bool begun_ = false;
+};
+
+TEST(DeviceLoop, device_that_does_not_do_as_it_is_told_is_a_named_fault_within_50_ms) {
+  using How = Disobedient::How;
+  const std::vector<std::pair<How, std::uint32_t>> cases = {{How::refuses, hal::kDeviceRefuses},
+                                                            {How::ignores, hal::kDeviceIgnores},
+                                                            {How::idles, hal::kDeviceIdle}};
+  for (const auto& each : cases) {
+    const std::uint32_t fault = each.second;
+    Disobedient model(each.first);
+    OpenLoop rig(model, seconds_of(3));
+    std::uint64_t begun_ns = 0, known_ns = 0;
+    rig.pumped.each_step = [&] {
+      const std::uint64_t now_ns = rig.clock.now_ns();
+      if (begun_ns == 0 && now_ns > 1500 * kMs && norm(model.rendered().force_N) > 0.5) {
+        model.begin();
+        begun_ns = now_ns;
+      }
+      if (known_ns == 0 && (rig.rig.device->faults() & fault) != 0) known_ns = now_ns;
+    };
+    const LoopReport& report = rig.run();
+    ASSERT_GT(begun_ns, 0u);
+    EXPECT_EQ(report.state, LoopState::fault);
+    EXPECT_TRUE(report.faults.has(Fault::device_error));
+    ASSERT_GT(known_ns, 0u);
+    EXPECT_LE(known_ns - begun_ns, 50 * kMs);
+    EXPECT_EQ(norm(model.rendered().force_N), 0.0);
+  }
 }
 
 TEST(DeviceLoop, few_lost_and_damaged_packets_go_unnoticed) {

@@ -139,10 +139,12 @@ TEST(DfuDevice, reasons_of_a_refusal_reach_the_host) {
       const auto part =
           file.subspan(at, std::min<std::size_t>(DfuDevice::kTransferBytes, file.size() - at));
       ASSERT_FALSE(dfu.handle({DfuRequest::download, block++}, part, 0).stall);
+      while (dfu.work()) {
+      }
       static_cast<void>(dfu.handle({DfuRequest::get_status, 0}, {}, kStatusReplyBytes));
     }
     ASSERT_FALSE(dfu.handle({DfuRequest::download, block}, {}, 0).stall);
-    static_cast<void>(dfu.handle({DfuRequest::get_status, 0}, {}, kStatusReplyBytes));
+    EXPECT_FALSE(dfu.work());
     const auto status = dfu.handle({DfuRequest::get_status, 0}, {}, kStatusReplyBytes).bytes;
     EXPECT_EQ(status[0], static_cast<std::byte>(c.status));
   }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <memory>
 #include <random>
 #include <string>
 
@@ -18,6 +19,7 @@
 namespace palpate::hal::flash {
 namespace {
 
+using hal::test::kMs;
 using hal::test::VirtualClock;
 using palpate::test::AlignedBytes;
 using simulator::FlashModel;
@@ -42,9 +44,8 @@ OpenDeviceOptions with(FlashModel& flash) {
 constexpr std::uint8_t kUpdateInterface = 1;
 
 /// Through the device's interface for updates.
-std::optional<DeviceProblem> write(Port& port, std::uint8_t slot,
+std::optional<DeviceProblem> write(Port& port, VirtualClock& clock, std::uint8_t slot,
                                    std::span<const std::byte> bytes) {
-  VirtualClock clock;
   port.claim(kUpdateInterface);
   auto problem = write_slot(port, clock, slot, bytes, [](const char*, double) {});
   port.claim(0);
@@ -53,30 +54,40 @@ std::optional<DeviceProblem> write(Port& port, std::uint8_t slot,
 
 /// A device on a port, updated as `palpate flash` does it.
 struct UpdateRig {
-  explicit UpdateRig(simulator::PortFaults faults = {})
-      : flash(kTwoSlots), device(with(flash)), port(device, clock, std::move(faults)) {}
+  UpdateRig() : flash(kTwoSlots), device(with(flash)) { plug_in(); }
+
+  void plug_in() {
+    while (!device.presence().on_bus) {
+      clock.sleep_until(clock.now_ns() + kMs);
+      device.advance_to(clock.now_ns());
+    }
+    port = std::make_unique<Port>(device, clock);
+  }
 
   std::optional<DeviceProblem> update(const AlignedBytes& bytes,
                                       std::optional<std::uint8_t> wanted = std::nullopt) {
     UpdateTarget target;
-    if (auto bad = read_target(port, target)) return bad;
+    if (auto bad = read_target(*port, target)) return bad;
     const auto slot = choose_slot(target, bytes.size(), wanted);
     if (const auto* bad = std::get_if<DeviceProblem>(&slot)) return *bad;
-    if (auto bad = write(port, std::get<std::uint8_t>(slot), bytes)) return bad;
-    return restart(port);
+    if (auto bad = write(*port, clock, std::get<std::uint8_t>(slot), bytes)) return bad;
+    if (auto bad = restart(*port)) return bad;
+    EXPECT_TRUE(read_target(*port, target));  // it has left the bus
+    plug_in();
+    return std::nullopt;
   }
 
   /// The hash of the image in use; zero where there is none.
   std::array<std::uint8_t, 32> in_use() {
     UpdateTarget target;
-    EXPECT_FALSE(read_target(port, target));
+    EXPECT_FALSE(read_target(*port, target));
     return target.image.content_sha256;
   }
 
   VirtualClock clock;
   FlashModel flash;
   OpenDevice device;
-  Port port;
+  std::unique_ptr<Port> port;
 };
 
 std::array<std::uint8_t, 32> hash_of(const AlignedBytes& bytes) {
@@ -130,7 +141,7 @@ TEST(Update, image_is_written_read_back_and_used_after_the_restart) {
 TEST(Update, device_without_a_restart_keeps_its_image) {
   UpdateRig rig;
   ASSERT_FALSE(rig.update(image_of(1)));
-  ASSERT_FALSE(write(rig.port, 1, image_of(2)));
+  ASSERT_FALSE(write(*rig.port, rig.clock, 1, image_of(2)));
   EXPECT_EQ(rig.in_use(), hash_of(image_of(1)));
 }
 
@@ -213,11 +224,11 @@ TEST(Update, read_back_that_differs_keeps_the_device_from_switching) {
   {
     OpenDevice honest(with(flash));
     Port port(honest, clock);
-    ASSERT_FALSE(write(port, 0, image_of(1)));
+    ASSERT_FALSE(write(port, clock, 0, image_of(1)));
   }
   Liar device(with(flash));
   Port port(device, clock);
-  const auto problem = write(port, 1, image_of(2));
+  const auto problem = write(port, clock, 1, image_of(2));
   ASSERT_TRUE(problem);
   EXPECT_EQ(problem->cause, "the device holds something else than was written");
   device.restart();
@@ -230,13 +241,13 @@ TEST(Update, update_ends_a_session_and_its_force) {
   UpdateRig rig;
   ASSERT_FALSE(rig.update(image_of(1)));
   const ControlRequest begin{protocol::kVendorOut, 2, 1, 0};
-  ASSERT_TRUE(rig.port.control_out(begin, {}, 0).ok());
+  ASSERT_TRUE(rig.port->control_out(begin, {}, 0).ok());
   const std::vector<std::byte> block(64);
-  rig.port.claim(kUpdateInterface);
-  ASSERT_TRUE(rig.port.select_alternate(1) == IoStatus::ok);
-  ASSERT_TRUE(rig.port.control_out({kDfuOut, 1, 0, 1}, block, 0).ok());
+  rig.port->claim(kUpdateInterface);
+  ASSERT_TRUE(rig.port->select_alternate(1) == IoStatus::ok);
+  ASSERT_TRUE(rig.port->control_out({kDfuOut, 1, 0, 1}, block, 0).ok());
   EXPECT_EQ(rig.device.mode(), protocol::Mode::idle);
-  EXPECT_EQ(restart(rig.port)->cause, "refused by the device");  // the session is still the host's
+  EXPECT_EQ(restart(*rig.port)->cause, "refused by the device");  // the session is still the host's
 }
 
 // Any requests in any order: the image in use stays whole, and only a sound one is ever committed.
@@ -256,6 +267,7 @@ TEST(DfuDevice, random_requests_never_harm_the_image_in_use) {
     const auto request = static_cast<DfuRequest>(random() % 8);
     if (random() % 16 == 0) dfu.select(static_cast<std::uint8_t>(random() % 2));
     if (random() % 8 == 0) block = 0;
+    if (random() % 2 == 0) dfu.work();
     const std::size_t length = random() % 4 == 0 ? random() % data.size() : 64;
     const auto answer =
         dfu.handle({request, block}, std::span(data).first(random() % 5 == 0 ? 0 : length), length);
@@ -274,6 +286,8 @@ TEST(DfuDevice, lost_block_is_noticed) {
   DfuDevice dfu(slots);
   const std::vector<std::byte> data(64);
   EXPECT_FALSE(dfu.handle({DfuRequest::download, 0}, data, 0).stall);
+  while (dfu.work()) {
+  }
   static_cast<void>(dfu.handle({DfuRequest::get_status, 0}, {}, 6));
   EXPECT_TRUE(dfu.handle({DfuRequest::download, 2}, data, 0).stall);
   const auto status = dfu.handle({DfuRequest::get_status, 0}, {}, 6).bytes;

@@ -8,15 +8,15 @@
 #include <random>
 
 #include "../support/packets.hpp"
+#include "../support/time.hpp"
 #include "hal/protocol/device_end.hpp"
 #include "hal/protocol/host_end.hpp"
 
 namespace palpate::hal::protocol {
 namespace {
 
+using hal::test::kMs;
 using test::some_capabilities;
-
-constexpr std::uint64_t kMs = 1'000'000;
 
 Command enabled(std::uint32_t sequence, std::uint32_t answers, std::int32_t force_uN = 1'000'000) {
   Command c;

@@ -39,7 +39,10 @@ TEST_F(HostChecks, tuned_host_passes_every_check) {
   put("proc/version", "Linux version 6.1.0-rt (x) #1 SMP PREEMPT_RT Debian");
   put("proc/sys/kernel/sched_rt_runtime_us", "-1");
   put("sys/devices/system/clocksource/clocksource0/current_clocksource", "tsc");
+  put("sys/devices/system/cpu/online", "0-1");
   put("sys/devices/system/cpu/isolated", "1");
+  put("sys/devices/system/cpu/nohz_full", "1");
+  put("proc/irq/default_smp_affinity", "1");
   put("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance");
   put("sys/module/usbcore/parameters/autosuspend", "-1");
   put("dev/cpu_dma_latency", "");
@@ -100,7 +103,7 @@ TEST_F(HostChecks, capabilities_stand_in_for_limits) {
 
 TEST_F(HostChecks, empty_tree_gives_every_check_an_answer) {
   const auto checks = check_host({}, root);
-  EXPECT_EQ(checks.size(), 11u);
+  EXPECT_EQ(checks.size(), 17u);
   for (const HostCheck& c : checks) EXPECT_FALSE(c.found.empty()) << c.check;
 }
 

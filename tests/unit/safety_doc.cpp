@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// docs/SAFETY.md names a guard and a test for every hazard: the tests are there.
+// docs/SAFETY.md names a guard and a test for every hazard, and the tests are there; other pages
+// keep their own rules.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -59,6 +60,23 @@ TEST(SafetyPage, every_hazard_has_tests_that_exist) {
     }
     EXPECT_GT(named, 0u) << rows[i];
   }
+}
+
+// Without -d it takes a file for another product.
+TEST(Documents, every_call_of_dfu_util_names_the_device) {
+  const std::regex call(R"(dfu-util (-.*))");
+  std::size_t calls = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(PALPATE_DOCS)) {
+    if (entry.path().extension() != ".md") continue;
+    std::istringstream page(text_of(entry.path()));
+    for (std::string line; std::getline(page, line);) {
+      std::smatch found;
+      if (!std::regex_search(line, found, call)) continue;
+      ++calls;
+      EXPECT_EQ(found[1].str().rfind("-d ", 0), 0u) << entry.path() << ": " << line;
+    }
+  }
+  EXPECT_GT(calls, 0u);
 }
 
 }  // namespace

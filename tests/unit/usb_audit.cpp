@@ -60,11 +60,11 @@ namespace {
 
 constexpr std::uint64_t kMs = 1'000'000;
 
-std::unique_ptr<LibusbTransport> transport_of(const test::EmulatedUsbfs& usbfs) {
+std::unique_ptr<LibusbTransport> transport_of(test::EmulatedUsbfs& usbfs) {
   libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
   Context context = make_context();
   libusb_device_handle* handle = nullptr;
-  EXPECT_EQ(libusb_wrap_sys_device(context.get(), usbfs.descriptor(), &handle), 0);
+  EXPECT_EQ(libusb_wrap_sys_device(context.get(), usbfs.open(), &handle), 0);
   Handle owned(handle);
   const auto interface = find_interface(Kind::open_protocol, libusb_get_device(handle));
   EXPECT_TRUE(interface);

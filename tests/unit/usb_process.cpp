@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../support/cube_scene.hpp"
@@ -157,6 +158,13 @@ TEST_F(UsbProcess, flash_writes_the_slots_in_turn_and_switches) {
   EXPECT_NE(in_use.err.find("slot B is in use"), std::string::npos) << in_use.err;
 }
 
+TEST_F(UsbProcess, flash_verifies_a_device_that_restarts_without_leaving_the_bus) {
+  plug_in({"stays=" + path("flash")});
+  const test::Outcome outcome = palpate({"flash", path("one.palp"), "--device", "usb", "--verify"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "Slot A holds the image, read back and compared; the device uses it.\n");
+}
+
 TEST_F(UsbProcess, dfu_util_writes_and_reads_back_the_same_bytes) {
   emit("one.palp", "one.dfu", "0x0001");
   const test::Outcome written = dfu_util({"-a", "0", "-D", path("one.dfu")});
@@ -262,12 +270,42 @@ TEST_F(UsbProcess, run_feels_the_contact_through_the_device) {
                                            "--seconds", "4", "--rate", "50", "--json", "--quiet"});
     ASSERT_TRUE(outcome.status == 0 || outcome.status == 4 || outcome.status == 5)
         << outcome.out << outcome.err;
+    EXPECT_EQ(outcome.err.find("shim: "), std::string::npos) << outcome.err;
     j = json::parse(outcome.out);
   }
   EXPECT_EQ(j["state"], "rendering") << j["faults"];
   EXPECT_GT(j["touching"].get<int>(), 0);
   EXPECT_GT(j["force_N"]["max"].get<double>(), 0.01);
   EXPECT_EQ(j["allocations"].is_null() ? 0 : j["allocations"].get<int>(), 0);
+}
+
+// A host that stalls is silenced before anything happens to the device: once more.
+TEST_F(UsbProcess, run_says_what_the_device_said_in_which_tick_and_how_to_fix_it) {
+  folder_.write("cube.palp", test::cube_image());
+  folder_.write("scene.toml", test::cube_loop_scene());
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"unplugged", "unplugged"}, {"motor", "motor_failure"}, {"refuses", "refused"}};
+  for (const auto& [what, said] : cases) {
+    plug_in({what + "=" + path("flash")});
+    constexpr int kRuns = 4;
+    json first = json::object();
+    test::Outcome outcome;
+    for (int i = 0; i < kRuns && first.value("device", "") != said; ++i) {
+      outcome = palpate({"run", path("scene.toml"), "--device", "usb", "--seconds", "3.5", "--rate",
+                         "50", "--json", "--quiet"});
+      ASSERT_TRUE(outcome.status == 4 || outcome.status == 5) << outcome.out << outcome.err;
+      const json j = json::parse(outcome.out);
+      EXPECT_EQ(j["state"], "fault");
+      ASSERT_FALSE(j["fault_details"].empty());
+      first = j["fault_details"][0];
+    }
+    EXPECT_EQ(first["device"], said);
+    EXPECT_EQ(first["fault"], "device_error");
+    EXPECT_GT(first["tick"].get<int>(), 100);
+    EXPECT_FALSE(first["fix"].get<std::string>().empty());
+    if (outcome.status != 4) continue;
+    EXPECT_EQ(outcome.err.rfind("palpate: error: the device ", 0), 0u) << outcome.err;
+  }
 }
 
 }  // namespace

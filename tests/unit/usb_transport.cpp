@@ -36,7 +36,7 @@ std::unique_ptr<LibusbTransport> transport_of(EmulatedUsbfs& usbfs, Kind kind) {
   libusb_set_option(nullptr, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
   Context context = make_context();
   libusb_device_handle* handle = nullptr;
-  if (!context || libusb_wrap_sys_device(context.get(), usbfs.descriptor(), &handle) != 0) {
+  if (!context || libusb_wrap_sys_device(context.get(), usbfs.open(), &handle) != 0) {
     ADD_FAILURE() << "libusb does not take the descriptor";
     return nullptr;
   }
@@ -117,7 +117,7 @@ TEST(Libusb, interfaces_are_found_by_what_they_are) {
   EmulatedUsbfs usbfs(model);
   const Context context = make_context();
   libusb_device_handle* handle = nullptr;
-  ASSERT_EQ(libusb_wrap_sys_device(context.get(), usbfs.descriptor(), &handle), 0);
+  ASSERT_EQ(libusb_wrap_sys_device(context.get(), usbfs.open(), &handle), 0);
   const Handle owned(handle);
   libusb_device* device = libusb_get_device(handle);
   const auto exchange = find_interface(Kind::open_protocol, device);
@@ -131,6 +131,20 @@ TEST(Libusb, interfaces_are_found_by_what_they_are) {
   ASSERT_TRUE(update);
   EXPECT_EQ(update->number, 1);
   EXPECT_FALSE(find_interface(Kind::falcon, device));
+}
+
+TEST(Libusb, interface_is_for_one_program_at_a_time) {
+  OpenDevice model({});
+  EmulatedUsbfs usbfs(model);
+  auto first = transport_of(usbfs, Kind::open_protocol);
+  const Context context = make_context();
+  libusb_device_handle* handle = nullptr;
+  ASSERT_EQ(libusb_wrap_sys_device(context.get(), usbfs.open(), &handle), 0);
+  const Handle second(handle);
+  EXPECT_EQ(libusb_claim_interface(handle, 0), LIBUSB_ERROR_BUSY);
+  EXPECT_EQ(libusb_claim_interface(handle, 7), LIBUSB_ERROR_NOT_FOUND);
+  first.reset();
+  EXPECT_EQ(libusb_claim_interface(handle, 0), 0);
 }
 
 TEST(Libusb, exchange_runs_with_every_in_transfer_pending) {
@@ -291,9 +305,14 @@ TEST(Libusb, image_is_written_read_back_and_used) {
     const auto problem = flash::write_slot(*update, clock, 1, image, [](const char*, double) {});
     ASSERT_FALSE(problem) << problem->phase << ": " << problem->cause;
   }
-  const auto exchange = transport_of(usbfs, Kind::open_protocol);
+  auto exchange = transport_of(usbfs, Kind::open_protocol);
   ASSERT_FALSE(flash::restart(*exchange));
   flash::UpdateTarget target;
+  const auto gone = flash::read_target(*exchange, target);
+  ASSERT_TRUE(gone);
+  EXPECT_EQ(gone->cause, "the device is gone");
+  while (!usbfs.look([&] { return model.presence().on_bus; })) std::this_thread::yield();
+  exchange = transport_of(usbfs, Kind::open_protocol);
   ASSERT_FALSE(flash::read_target(*exchange, target));
   EXPECT_EQ(target.image.active_slot, 1);
   EXPECT_EQ(target.image.image_bytes, image.size());

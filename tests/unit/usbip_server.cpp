@@ -8,6 +8,7 @@
 #include <csignal>
 #include <thread>
 
+#include "../support/temporary_folder.hpp"
 #include "../support/time.hpp"
 #include "../support/tiny_image.hpp"
 #include "../support/usbip_client.hpp"
@@ -16,6 +17,7 @@
 #include "hal/simulator/flash_model.hpp"
 #include "hal/simulator/open_device.hpp"
 #include "hal/transport/streamed_device.hpp"
+#include "hal/usbip/vhci.hpp"
 
 namespace palpate::hal::usbip {
 namespace {
@@ -119,11 +121,57 @@ TEST(UsbipServer, image_is_written_read_back_and_used) {
   const auto problem =
       flash::write_slot(*server.attach(1), clock, 1, image, [](const char*, double) {});
   ASSERT_FALSE(problem) << problem->phase << ": " << problem->cause;
-  const auto exchange = server.attach();
+  auto exchange = server.attach();
   ASSERT_FALSE(flash::restart(*exchange));
   flash::UpdateTarget target;
+  EXPECT_TRUE(flash::read_target(*exchange, target));  // it has left the bus
+  exchange = server.attach();
   ASSERT_FALSE(flash::read_target(*exchange, target));
   EXPECT_EQ(target.image.active_slot, 1);
+}
+
+TEST(UsbipServer, owner_that_does_not_ask_has_the_device) {
+  MonotonicClock clock;
+  OpenDevice device(patient());
+  Server server(device, clock, "127.0.0.1", 0);
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+  server.adopt_owner(ends[0]);
+  EXPECT_TRUE(server.attached());
+  std::atomic<bool> stop{false};
+  std::thread thread([&] {
+    while (!stop) server.step(clock.now_ns() + kMs);
+  });
+  UsbipTransport transport(ends[1]);
+  protocol::Capabilities capabilities;
+  EXPECT_FALSE(
+      protocol::read_descriptor(transport, protocol::PacketType::capabilities, 0, capabilities));
+  stop = true;
+  thread.join();
+}
+
+TEST(Vhci, device_goes_to_the_first_free_port_of_its_speed) {
+  const palpate::test::TemporaryFolder folder;
+  folder.write("status",
+               "hub port sta spd dev      sockfd local_busid\n"
+               "hs  0000 006 003 00010002 000003 3-1\n"
+               "hs  0001 004 000 00000000 000000 0-0\n"
+               "ss  0008 004 000 00000000 000000 0-0\n");
+  folder.write("attach", "");
+  const Vhci vhci(folder.path());
+  EXPECT_TRUE(vhci.has_device());
+  ASSERT_TRUE(vhci.attach(7, simulator::UsbSpeed::high));
+  EXPECT_EQ(palpate::test::read_file(folder.path() / "attach"), "1 7 65538 3");
+}
+
+TEST(Vhci, without_ports_or_the_right_to_them_nothing_is_attached) {
+  const palpate::test::TemporaryFolder folder;
+  EXPECT_FALSE(Vhci(folder.path()).attach(7, simulator::UsbSpeed::high));
+  folder.write("status", "hs  0000 006 003 00020005 000003 3-1\n");
+  EXPECT_FALSE(Vhci(folder.path()).has_device());
+  EXPECT_FALSE(Vhci(folder.path()).attach(7, simulator::UsbSpeed::high));
+  folder.write("status", "hs  0000 004 000 00000000 000000 0-0\n");
+  EXPECT_FALSE(Vhci(folder.path()).attach(7, simulator::UsbSpeed::high));  // no such file
 }
 
 TEST(UsbipServer, too_many_clients_are_turned_away_and_rude_ones_closed) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // palpate-sim: a simulated haptic device on TCP, by USB/IP. A machine with Linux's vhci_hcd
 // attaches it and has a USB device like any other.
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
@@ -16,6 +19,7 @@
 #include "hal/simulator/falcon_device.hpp"
 #include "hal/simulator/open_device.hpp"
 #include "hal/usbip/server.hpp"
+#include "hal/usbip/vhci.hpp"
 #include "tools/palpate/error_line.hpp"
 #include "tools/palpate/key_file.hpp"
 #include "tools/realtime/scene_hand.hpp"
@@ -82,6 +86,47 @@ Simulated make(const Options& options) {
   return out;
 }
 
+/// Where this machine's kernel had the device, it gets it again after the device's restart: nobody
+/// else would notice that it is back.
+class Replugger {
+ public:
+  Replugger(hal::usbip::Server& server, const hal::simulator::SimulatedDevice& device)
+      : server_(server), device_(device) {}
+
+  /// Called now and then.
+  void look() {
+    const hal::simulator::Presence presence = device_.presence();
+    if (server_.attached() && presence.times_left == times_left_) {
+      plugged_in_here_ = vhci_.has_device();
+    } else if (!server_.attached() && presence.on_bus) {
+      // Not after somebody has detached it.
+      if (plugged_in_here_ && presence.times_left != times_left_) plug_in();
+      plugged_in_here_ = false;
+      times_left_ = presence.times_left;
+    }
+  }
+
+ private:
+  void plug_in() {
+    int ends[2];
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return;
+    if (vhci_.attach(ends[1], device_.descriptors().speed)) {
+      server_.adopt_owner(ends[0]);
+    } else {
+      ::close(ends[0]);
+      std::printf("the device is back; attach it again\n");
+      std::fflush(stdout);
+    }
+    ::close(ends[1]);
+  }
+
+  hal::usbip::Server& server_;
+  const hal::simulator::SimulatedDevice& device_;
+  hal::usbip::Vhci vhci_;
+  bool plugged_in_here_ = false;
+  std::uint32_t times_left_ = 0;  ///< by the device, when it was looked at last
+};
+
 int serve(const Options& options) {
   hal::MonotonicClock clock;
   const Simulated simulated = make(options);
@@ -93,8 +138,14 @@ int serve(const Options& options) {
       server.port(), options.address.c_str(), std::string(hal::usbip::kBusId).c_str());
   std::fflush(stdout);
   bool attached = false;
+  Replugger replugger(server, *simulated.device);
+  std::uint64_t look_ns = 0;
   while (!g_stop) {
     server.step(clock.now_ns() + kLookEvery_ns);
+    if (clock.now_ns() >= look_ns) {
+      replugger.look();
+      look_ns = clock.now_ns() + kLookEvery_ns;
+    }
     if (attached == server.attached()) continue;
     attached = server.attached();
     std::printf(attached ? "attached\n" : "detached\n");

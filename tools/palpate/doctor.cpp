@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // palpate doctor: is this host ready for the real-time loop?
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -33,6 +34,8 @@ void doctor(bool json) {
   } else {
     for (const auto& check : checks) print(check);
   }
+  const bool ready = std::all_of(checks.begin(), checks.end(), [](const auto& c) { return c.ok; });
+  if (!ready) set_exit(kOther);
 }
 
 }  // namespace
@@ -40,7 +43,9 @@ void doctor(bool json) {
 void add_doctor(CLI::App& app) {
   auto json = std::make_shared<bool>(false);
   CLI::App* command =
-      app.add_subcommand("doctor", "Say whether this host is ready for the real-time loop");
+      app.add_subcommand("doctor",
+                         "Say whether this host is ready for the real-time loop; exit status 1 "
+                         "where something is to be fixed");
   command->add_flag("--json", *json, "print a JSON list");
   command->callback([json] { doctor(*json); });
 }

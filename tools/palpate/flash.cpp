@@ -50,18 +50,28 @@ UpdateTarget target_of(const std::string& device) {
   return target;
 }
 
-/// After its restart: whether the device uses the image. It leaves the bus meanwhile.
-bool comes_back_with(const std::string& device, const ImageFile& image) {
+/// The device restarts. It leaves the bus for that: nothing of it stays open here.
+void restart(const std::string& device) {
+  const auto exchange = open_usb(device, Kind::open_protocol);
+  if (const auto problem = hal::flash::restart(*exchange)) fail(device, *problem);
+}
+
+/// After its restart the device has to use the image. At first it may still be there as before.
+void await(const std::string& device, const ImageFile& image) {
   const auto give_up = std::chrono::steady_clock::now() + kBackWithin;
+  std::string last = "it is not on the bus";
   while (std::chrono::steady_clock::now() < give_up) {
     std::this_thread::sleep_for(kLookEvery);
     auto opened = hal::usb::open_transport(Kind::open_protocol, parse_device(device).serial);
     const auto* exchange = std::get_if<std::unique_ptr<hal::Transport>>(&opened);
     UpdateTarget target;
-    if (exchange == nullptr || hal::flash::read_target(**exchange, target)) continue;
-    return is_same(target, image);
+    const auto problem = exchange == nullptr ? std::get<hal::DeviceProblem>(opened)
+                                             : hal::flash::read_target(**exchange, target);
+    if (!problem && is_same(target, image)) return;
+    last = problem ? problem->cause : "it uses another image";
   }
-  return false;
+  throw Failure(kDevice, "the device did not come back with the new image, " + last, device,
+                "switch it off and on, then see 'palpate devices'");
 }
 
 void flash(const FlashOptions& options) {
@@ -91,12 +101,8 @@ void flash(const FlashOptions& options) {
       fail(options.device, *problem);
     }
   }
-  const auto exchange = open_usb(options.device, Kind::open_protocol);
-  if (const auto problem = hal::flash::restart(*exchange)) fail(options.device, *problem);
-  if (options.verify && !comes_back_with(options.device, image)) {
-    throw Failure(kDevice, "the device did not come back with the new image", options.device,
-                  "switch it off and on, then see 'palpate devices'");
-  }
+  restart(options.device);
+  if (options.verify) await(options.device, image);
   std::cout << "Slot " << name_of(slot) << " holds the image, read back and compared; the device "
             << (options.verify ? "uses it.\n" : "starts with it.\n");
 }

@@ -17,6 +17,8 @@
 #include "hal/mock/device.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/device_choice.hpp"
+#include "tools/palpate/error_line.hpp"
+#include "tools/palpate/fault_words.hpp"
 #include "tools/palpate/query_stack.hpp"
 #include "tools/palpate/run_summary.hpp"
 #include "tools/palpate/scene_engine.hpp"
@@ -154,9 +156,9 @@ class ServerThread {
   std::optional<realtime::RealtimeThread> thread_;
 };
 
-/// Runs the loop to its end, telling how far it has come.
+/// Runs the loop to its end, telling how far it has come, and stops the device.
 realtime::HostGrant drive(const RunOptions& options, const realtime::LoopSettings& settings,
-                          realtime::Loop& loop) {
+                          realtime::Loop& loop, hal::Device& device) {
   const StopOnSignal stop_on_signal;
   const bake::Progress show = progress(options.quiet);
   realtime::RealtimeThread thread(options.realtime, [&loop] { loop.run(g_stop); });
@@ -165,7 +167,9 @@ realtime::HostGrant drive(const RunOptions& options, const realtime::LoopSetting
     if (!options.seconds) continue;
     show("run", static_cast<double>(loop.periods_passed()) / static_cast<double>(settings.periods));
   }
-  return thread.join();
+  realtime::HostGrant grant = thread.join();
+  device.stop();
+  return grant;
 }
 
 /// A file given by the user cannot be written.
@@ -192,7 +196,15 @@ void report(const RunOptions& options, const RunOutcome& outcome) {
   } else {
     std::cout << run_text(outcome);
   }
-  set_exit(broken_promises(outcome).empty() ? exit_of(outcome.report.faults) : kPromiseBroken);
+  const bool kept = broken_promises(outcome).empty();
+  set_exit(kept ? exit_of(outcome.report.faults) : kPromiseBroken);
+  if (!kept || outcome.report.faults.empty()) return;
+  for (const FaultNote& note : fault_notes(outcome.report)) {
+    if (note.fault.empty()) continue;
+    print_error("palpate", note.cause + ": " + options.device + ", tick " +
+                               std::to_string(note.tick) + ": " + note.fix);
+    return;
+  }
 }
 
 /// A recorded motion takes the place of the scene's path, and is played once unless told how long.
@@ -249,8 +261,7 @@ void run(RunOptions options) {
 
   RunOutcome outcome;
   const ServerThread server(options, stable.scene, queries.server(), clock);
-  outcome.grant = drive(options, settings, *loop);
-  device->stop();
+  outcome.grant = drive(options, settings, *loop, *device);
   outcome.scene = scene.file;
   outcome.device = options.device;
   outcome.rate_Hz = rate_Hz;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/palpate/fault_words.hpp"
 #include "tools/palpate/words.hpp"
 
 namespace palpate::cli {
@@ -122,6 +123,40 @@ std::string host_lines(const RunOutcome& o) {
   return text;
 }
 
+std::string fault_lines(const LoopReport& r) {
+  std::string text;
+  for (const FaultNote& note : fault_notes(r)) {
+    text += line(note.fault.empty() ? "note" : "fault",
+                 "in tick " + grouped(note.tick) + ": " + note.cause +
+                     (note.device.empty() ? "" : " (" + note.device + ")")) +
+            line("fix", note.fix);
+  }
+  return text;
+}
+
+std::string verdict(const RunOutcome& o) {
+  const auto broken = broken_promises(o);
+  const bool faulted = !o.report.faults.empty();
+  if (broken.empty()) {
+    return faulted ? "\nA fault has ended the rendering.\n" : "\nEvery promise was kept.\n";
+  }
+  std::string text = "\nPromises broken: ";
+  for (std::size_t i = 0; i < broken.size(); ++i) text += (i > 0 ? ", " : "") + broken[i];
+  return text + ". `palpate doctor` says what this host lacks.\n";
+}
+
+nlohmann::json fault_json(const LoopReport& r) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const FaultNote& note : fault_notes(r)) {
+    list.push_back({{"fault", note.fault},
+                    {"device", note.device},
+                    {"tick", note.tick},
+                    {"cause", note.cause},
+                    {"fix", note.fix}});
+  }
+  return list;
+}
+
 nlohmann::json percentiles_json(const Histogram& h) {
   return {{"p50", h.percentile_ns(0.5)},
           {"p99", h.percentile_ns(0.99)},
@@ -152,15 +187,8 @@ std::string run_text(const RunOutcome& o) {
       (o.budget_us ? format("budget %.0f µs\n\n", *o.budget_us) : "no budget but the period\n\n");
   std::string state(realtime::name(r.state));
   for (const std::string_view fault : realtime::names(r.faults)) state += " " + std::string(fault);
-  text += line("state", state) + timing_lines(r) + contact_lines(r) + host_lines(o);
-
-  const auto broken = broken_promises(o);
-  text += broken.empty() ? "\nEvery promise was kept.\n" : "\nPromises broken: ";
-  for (std::size_t i = 0; i < broken.size(); ++i) {
-    text += broken[i] +
-            (i + 1 < broken.size() ? ", " : ". `palpate doctor` says what this host lacks.\n");
-  }
-  return text;
+  return text + line("state", state) + fault_lines(r) + timing_lines(r) + contact_lines(r) +
+         host_lines(o) + verdict(o);
 }
 
 nlohmann::json run_json(const RunOutcome& o) {
@@ -193,6 +221,8 @@ nlohmann::json run_json(const RunOutcome& o) {
   j["energy_J_min"] = r.energy_J_min;
   j["state"] = realtime::name(r.state);
   j["faults"] = realtime::names(r.faults);
+  j["device_faults"] = device_fault_names(r.device_faults);
+  j["fault_details"] = fault_json(r);
   j["scheduler"] = o.grant.scheduler;
   j["memory_locked"] = o.grant.memory_locked;
   j["notes"] = o.grant.notes;

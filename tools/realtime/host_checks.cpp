@@ -6,8 +6,10 @@
 
 #include <fstream>
 #include <limits>
-#include <optional>
-#include <utility>
+
+#include "tools/realtime/host_files.hpp"
+#include "tools/realtime/processor_checks.hpp"
+#include "tools/realtime/usb_checks.hpp"
 
 #if defined(__SSE__)
 #include <xmmintrin.h>
@@ -19,23 +21,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
-constexpr std::uint64_t kWantedPriority = 80;
-
-/// The first line of a small file; absent where it cannot be read.
-std::optional<std::string> first_line(const fs::path& file) {
-  std::ifstream in(file);
-  std::string line;
-  if (!in) return std::nullopt;
-  std::getline(in, line);
-  return line;
-}
+constexpr std::uint64_t kWantedPriority = kLoopPriority;
 
 std::string number_or_unlimited(std::uint64_t value, const char* unit) {
   return value == kUnlimited ? "unlimited" : std::to_string(value) + unit;
-}
-
-HostCheck make(std::string name, bool ok, std::string found, std::string wanted, std::string mend) {
-  return {std::move(name), ok, std::move(found), std::move(wanted), ok ? "" : std::move(mend)};
 }
 
 HostCheck kernel_preemption(const fs::path& root) {
@@ -46,32 +35,32 @@ HostCheck kernel_preemption(const fs::path& root) {
   for (const char* model : {"PREEMPT", "PREEMPT_DYNAMIC"}) {
     if (version.find(model) != std::string::npos) found = model;
   }
-  return make("kernel_preemption", realtime, realtime ? "PREEMPT_RT" : found, "PREEMPT_RT",
-              "sudo apt install linux-image-rt-amd64 && sudo reboot");
+  return make_check("kernel_preemption", realtime, realtime ? "PREEMPT_RT" : found, "PREEMPT_RT",
+                    "sudo apt install linux-image-rt-amd64 && sudo reboot");
 }
 
 HostCheck rtprio_limit(const HostRights& rights, const std::string& set_up) {
   const bool ok = rights.any_priority || rights.max_fifo_priority >= kWantedPriority;
-  return make("rtprio_limit", ok,
-              rights.any_priority ? "any (CAP_SYS_NICE)"
-                                  : number_or_unlimited(rights.max_fifo_priority, ""),
-              "at least " + std::to_string(kWantedPriority), set_up + ", then log in again");
+  return make_check("rtprio_limit", ok,
+                    rights.any_priority ? "any (CAP_SYS_NICE)"
+                                        : number_or_unlimited(rights.max_fifo_priority, ""),
+                    "at least " + std::to_string(kWantedPriority), set_up + ", then log in again");
 }
 
 HostCheck memlock_limit(const HostRights& rights, const std::string& set_up) {
   const bool ok = rights.any_memory || rights.max_locked_bytes == kUnlimited;
-  return make("memlock_limit", ok,
-              rights.any_memory ? "any (CAP_IPC_LOCK)"
-                                : number_or_unlimited(rights.max_locked_bytes, " bytes"),
-              "unlimited", set_up + ", then log in again");
+  return make_check("memlock_limit", ok,
+                    rights.any_memory ? "any (CAP_IPC_LOCK)"
+                                      : number_or_unlimited(rights.max_locked_bytes, " bytes"),
+                    "unlimited", set_up + ", then log in again");
 }
 
 HostCheck realtime_throttling(const fs::path& root) {
   const std::string found =
       first_line(root / "proc/sys/kernel/sched_rt_runtime_us").value_or("unknown");
-  return make("realtime_throttling", found == "-1" || found == "950000" || found == "1000000",
-              found + " µs of each second for real-time threads", "-1 (no bound) or 950000",
-              "sudo sysctl -w kernel.sched_rt_runtime_us=950000");
+  return make_check("realtime_throttling", found == "-1" || found == "950000" || found == "1000000",
+                    found + " µs of each second for real-time threads", "-1 (no bound) or 950000",
+                    "sudo sysctl -w kernel.sched_rt_runtime_us=950000");
 }
 
 HostCheck clock_source(const fs::path& root) {
@@ -79,28 +68,21 @@ HostCheck clock_source(const fs::path& root) {
       first_line(root / "sys/devices/system/clocksource/clocksource0/current_clocksource")
           .value_or("unknown");
   const bool ok = found == "tsc" || found == "arch_sys_counter" || found == "kvm-clock";
-  return make("clock_source", ok, found,
-              "tsc, arch_sys_counter or kvm-clock (read without a system call)",
-              "boot with the kernel parameters: clocksource=tsc tsc=reliable");
-}
-
-HostCheck isolated_cpus(const fs::path& root) {
-  const std::string found = first_line(root / "sys/devices/system/cpu/isolated").value_or("");
-  return make("isolated_cpus", !found.empty(), found.empty() ? "none" : found,
-              "one processor for the loop",
-              "boot with the kernel parameters: isolcpus=1 nohz_full=1 rcu_nocbs=1 irqaffinity=0, "
-              "then palpate run --cpu 1");
+  return make_check("clock_source", ok, found,
+                    "tsc, arch_sys_counter or kvm-clock (read without a system call)",
+                    "boot with the kernel parameters: clocksource=tsc tsc=reliable");
 }
 
 HostCheck cpu_dma_latency(const fs::path& root, const std::string& set_up) {
   const fs::path file = root / "dev/cpu_dma_latency";
   const bool exists = fs::exists(file);
   const bool ok = !exists || ::access(file.c_str(), W_OK) == 0;
-  return make("cpu_dma_latency", ok,
-              !exists ? "no processor sleep states"
-              : ok    ? "writable"
-                      : "not writable",
-              "/dev/cpu_dma_latency writable, so that the loop can keep processors awake", set_up);
+  return make_check("cpu_dma_latency", ok,
+                    !exists ? "no processor sleep states"
+                    : ok    ? "writable"
+                            : "not writable",
+                    "/dev/cpu_dma_latency writable, so that the loop can keep processors awake",
+                    set_up);
 }
 
 HostCheck frequency_scaling(const fs::path& root, const std::string& set_up) {
@@ -111,23 +93,9 @@ HostCheck frequency_scaling(const fs::path& root, const std::string& set_up) {
     if (!governor || *governor == "performance") continue;
     found = *governor;
   }
-  return make("frequency_scaling", found.empty(), found.empty() ? "none, or performance" : found,
-              "the governor performance on every processor", set_up);
-}
-
-HostCheck usb_autosuspend(const fs::path& root, const std::string& set_up) {
-  const auto found = first_line(root / "sys/module/usbcore/parameters/autosuspend");
-  return make("usb_autosuspend", !found || *found == "-1",
-              found ? *found + " s" : "no USB in this kernel",
-              "-1 (never): a suspended device wakes up too late",
-              set_up + ", then plug the device in again");
-}
-
-HostCheck udev_rule(const fs::path& root, const std::string& set_up) {
-  constexpr const char* kRule = "udev/rules.d/70-palpate.rules";
-  const bool ok = fs::exists(root / "etc" / kRule) || fs::exists(root / "usr/lib" / kRule);
-  return make("udev_rule", ok, ok ? "installed" : "not installed",
-              "70-palpate.rules, so that haptic devices may be used without root", set_up);
+  return make_check("frequency_scaling", found.empty(),
+                    found.empty() ? "none, or performance" : found,
+                    "the governor performance on every processor", set_up);
 }
 
 bool flushes_denormals() {
@@ -146,9 +114,9 @@ bool flushes_denormals() {
 
 HostCheck denormal_mode() {
   const bool flushed = flushes_denormals();
-  return make("denormal_mode", !flushed, flushed ? "flushed to zero" : "kept",
-              "kept: the loop, a replay and a device must give the same bits",
-              "do not preload libraries that were built with -ffast-math");
+  return make_check("denormal_mode", !flushed, flushed ? "flushed to zero" : "kept",
+                    "kept: the loop, a replay and a device must give the same bits",
+                    "do not preload libraries that were built with -ffast-math");
 }
 
 /// Effective capabilities of this process, as a set of bits; none where unknown.
@@ -194,17 +162,18 @@ fs::path set_up_script() {
 std::vector<HostCheck> check_host(const HostRights& rights, const fs::path& root,
                                   const fs::path& script) {
   const std::string set_up = "sudo " + script.string();
-  return {kernel_preemption(root),
-          rtprio_limit(rights, set_up),
-          memlock_limit(rights, set_up),
-          realtime_throttling(root),
-          clock_source(root),
-          isolated_cpus(root),
-          cpu_dma_latency(root, set_up),
-          frequency_scaling(root, set_up),
-          usb_autosuspend(root, set_up),
-          udev_rule(root, set_up),
-          denormal_mode()};
+  std::vector<HostCheck> checks = {kernel_preemption(root),
+                                   rtprio_limit(rights, set_up),
+                                   memlock_limit(rights, set_up),
+                                   realtime_throttling(root),
+                                   clock_source(root),
+                                   cpu_dma_latency(root, set_up),
+                                   frequency_scaling(root, set_up),
+                                   denormal_mode()};
+  for (const auto& more : {processor_checks(root), usb_checks(root, set_up)}) {
+    checks.insert(checks.end(), more.begin(), more.end());
+  }
+  return checks;
 }
 
 }  // namespace palpate::realtime

@@ -30,6 +30,15 @@ std::uint8_t truncation_bits(const Certificate& c) {
   return static_cast<std::uint8_t>(bits);
 }
 
+/// Notes for each bit that was not there before the tick in which it came.
+template <class Bits, std::size_t kCount>
+void note_new(Bits now, Bits& seen, std::array<std::uint64_t, kCount>& ticks, std::uint64_t tick) {
+  for (std::size_t i = 0; i < kCount; ++i) {
+    if ((now >> i & ~(seen >> i) & 1u) != 0) ticks[i] = tick;
+  }
+  seen = static_cast<Bits>(seen | now);
+}
+
 }  // namespace
 
 /// One tick in the making.
@@ -71,7 +80,6 @@ void Loop::run(const std::atomic<bool>& stop) noexcept {
   }
   report_.counted = thread_counters() - before;
   report_.state = safety_.state();
-  report_.faults = safety_.faults();
   send({});
 }
 
@@ -91,6 +99,7 @@ std::uint64_t Loop::run_tick(std::uint64_t due_ns) noexcept {
 
   const std::uint64_t late = elapsed(due_ns, tick.end_ns) / period_ns_;
   safety_.tick_ended(late);
+  note_faults();
   account(tick);
   if (telemetry_ != nullptr) record(tick);
   ++report_.ticks;
@@ -134,6 +143,12 @@ void Loop::observe_energy(std::uint64_t elapsed_ns) noexcept {
   passivity_.observe(command_.wrench, moved_m, turned_rad, 1e-9 * static_cast<double>(elapsed_ns));
   report_.energy_J = passivity_.work();
   report_.energy_J_min = passivity_.least_work();
+}
+
+void Loop::note_faults() noexcept {
+  const std::uint64_t tick = report_.ticks;
+  note_new(safety_.faults().bits, report_.faults.bits, report_.fault_ticks, tick);
+  note_new(reading_.faults, report_.device_faults, report_.device_fault_ticks, tick);
 }
 
 void Loop::account(const Tick& tick) noexcept {

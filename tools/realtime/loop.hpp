@@ -6,6 +6,7 @@
 // in virtual time.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -73,6 +74,9 @@ struct LoopReport {
   double energy_J_min = 0;                    ///< its least value; at most 0
   LoopState state = LoopState::disconnected;  ///< at the end
   FaultSet faults;
+  std::array<std::uint64_t, kFaultCount> fault_ticks{};  ///< in which each of them was raised
+  std::uint32_t device_faults = 0;                       ///< DeviceFault bits of the readings
+  std::array<std::uint64_t, hal::kDeviceFaultKinds> device_fault_ticks{};  ///< likewise
 };
 
 class Loop {
@@ -105,6 +109,7 @@ class Loop {
   void send(const Wrench& wrench) noexcept;
   void observe_energy(std::uint64_t elapsed_ns) noexcept;
   void account(const Tick& tick) noexcept;
+  void note_faults() noexcept;
   void record(const Tick& tick) noexcept;
 
   LoopSettings settings_;

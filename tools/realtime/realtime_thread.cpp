@@ -8,7 +8,6 @@
 #include <system_error>
 #include <utility>
 
-#include "tools/realtime/host_memory.hpp"
 #include "tools/realtime/latency_request.hpp"
 
 namespace palpate::realtime {
@@ -53,6 +52,11 @@ void schedule_fifo(int priority, HostGrant& grant) {
   }
 }
 
+void schedule_ordinary() {
+  const sched_param none{};
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &none);
+}
+
 }  // namespace
 
 RealtimeThread::RealtimeThread(const RealtimeOptions& options, std::function<void()> body)
@@ -90,12 +94,14 @@ void RealtimeThread::prepare_and_run() {
         "processor sleep states not bounded: give this user write access to /dev/cpu_dma_latency");
   }
   pin_to(options_.cpu, grant_);
-  const HostMemory memory;
-  grant_.memory_locked = memory.locked();
-  if (!memory.problem().empty()) grant_.notes.push_back(memory.problem());
+  memory_.emplace();
+  grant_.memory_locked = memory_->locked();
+  if (!memory_->problem().empty()) grant_.notes.push_back(memory_->problem());
   // Last: what came before may take long, and nobody else could run meanwhile.
   schedule_fifo(options_.fifo_priority, grant_);
   body_();
+  // First: the device's thread may share the processor, and has the last command to send.
+  schedule_ordinary();
 }
 
 }  // namespace palpate::realtime

@@ -8,8 +8,11 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "tools/realtime/host_memory.hpp"
 
 namespace palpate::realtime {
 
@@ -35,7 +38,10 @@ struct HostGrant {
 /// Floating point stays as the C++ runtime sets it: denormals are kept (no FTZ, no DAZ), because
 /// the same poses must give the same bits in the loop, in a replay and on a device.
 ///
-/// Memory that is mapped after the start is not locked: have all of it before.
+/// Memory that is mapped after the start is not locked: have all of it before. It stays locked
+/// until this ends, for unlocking takes long and holds up whoever maps memory meanwhile: end it
+/// once the device has been stopped. The thread itself leaves its priority as soon as its body has
+/// returned.
 class RealtimeThread {
  public:
   /// The body must not throw. Throws std::system_error where no thread can be made.
@@ -59,6 +65,7 @@ class RealtimeThread {
   RealtimeOptions options_;
   std::function<void()> body_;
   HostGrant grant_;
+  std::optional<HostMemory> memory_;  ///< of the thread until it has ended
   std::atomic<bool> finished_{false};
   bool joined_ = false;
   pthread_t thread_{};
