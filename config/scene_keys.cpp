@@ -40,9 +40,6 @@ constexpr Key<Scene> kEngineKeys[] = {
      "which bodies touch"},
     {"interpolate", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.interpolate; }},
      "blend between levels of detail, so that the force has no steps"},
-    {"contact_dive", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.contact_dive; }},
-     "`levels`: contacts of simplified pieces have the least distance of the original surfaces "
-     "below them, so that the force hardly depends on the level; off: their own, as in the paper"},
     {"front_tracking", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.front_tracking; }},
      "`levels`: a tick starts from the last tick's front; off: from the roots"},
     {"motion_bounds", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.motion_bounds; }},

@@ -64,7 +64,6 @@ typedef struct palpate_settings {
   uint32_t motion_bounds;
   uint32_t root_short_cut;
   uint32_t stop_on_surface;
-  uint32_t contact_dive; /* 0 or 1 */
   double delta_m;
   double s0;
   double kappa; /* infinity: no such rule */

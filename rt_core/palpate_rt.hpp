@@ -72,11 +72,6 @@ struct Settings {
   /// Without a budget it changes nothing.
   Order order = Order::force;
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
-  /// Give contacts of simplified pieces the least distance of the original surfaces below them,
-  /// instead of their own (the paper's): the force then hardly depends on the level. Costs about as
-  /// many queries as refinement (levels/dive.hpp); where the budget ends refinement, contacts that
-  /// were not reached are found so too. An exact query does the latter in any case.
-  bool contact_dive = false;
 
   // Fewer pairs (levels engine). Each can be switched alone, so that its effect can be measured.
   // The first three never change which pairs are near; the last one leaves contacts out.

@@ -52,7 +52,6 @@ struct Layout {
   std::span<levels::Node> nodes;
   std::span<std::uint32_t> front, blending, stopped;
   std::span<levels::Waiting> waiting;
-  std::span<levels::OpenPair> open;
   std::span<levels::Touch> touches;
   std::span<convex::PenetrationScratch> scratch;
   std::span<convex::PressureScratch> pressure;
@@ -111,7 +110,6 @@ void lay_out_levels(Arena& arena, const Scene& scene, const Limits& limits, Layo
   out.blending = arena.array<std::uint32_t>(limits.nodes);
   out.waiting = arena.array<levels::Waiting>(limits.nodes);
   out.stopped = arena.array<std::uint32_t>(limits.nodes);
-  out.open = arena.array<levels::OpenPair>(levels::kMaxOpenPairs);
   out.touches = arena.array<levels::Touch>(levels::kTouches * scene.pairs.size());
   out.scratch = arena.array<convex::PenetrationScratch>(1);
   out.pressure = arena.array<convex::PressureScratch>(1);
@@ -185,7 +183,6 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.levels.tree.attach(layout.nodes, layout.front, layout.blending);
   e.levels.waiting = layout.waiting;
   e.levels.stopped = layout.stopped;
-  e.levels.open = layout.open;
   e.levels.touches = layout.touches;
   e.levels.scratch = layout.scratch.data();
   e.levels.pressure = layout.pressure.data();

@@ -19,15 +19,6 @@
 
 namespace palpate::levels {
 
-/// A pair of pieces that a dive has open (dive.hpp).
-struct OpenPair {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
-  double lower = 0;  ///< nothing below it is nearer, in units
-};
-/// Pairs that a dive has open, at most.
-inline constexpr std::uint32_t kMaxOpenPairs = 64;
-
 /// A pair of pieces that has touched (recall.hpp), and where.
 struct Touch {
   std::uint32_t a = kNone;
@@ -47,7 +38,6 @@ struct QueryMemory {
   TestTree tree;
   std::span<Waiting> waiting;        ///< [nodes]
   std::span<std::uint32_t> stopped;  ///< [nodes]; those that refinement stopped at in this tick
-  std::span<OpenPair> open;          ///< [kMaxOpenPairs]
   std::span<Touch> touches;          ///< [kTouches for each pair]
   std::span<Contact> contacts;       ///< [limits.contacts]
   convex::PenetrationScratch* scratch = nullptr;
@@ -77,8 +67,7 @@ struct QueryResult {
 /// Q(A, B, delta) for all pairs, whose poses and deltas are set.
 ///
 /// Stage by stage: start (start.hpp) from last tick's front, the near nodes of it on a queue;
-/// refine (refine.hpp) and dive for the contacts of the original surfaces (dive.hpp), which share
-/// the budget; with time left, interpolate contacts between levels
+/// refine (refine.hpp) while the budget lasts; with time left, interpolate contacts between levels
 /// (interpolate.hpp) and keep up the tree and the certificate (upkeep.hpp). What still waits when
 /// the budget ends keeps its lower bound, and the last contact that it or an ancestor gave,
 /// re-measured at its material points: the cut is complete at every moment, and a truncated answer

@@ -40,8 +40,8 @@ bool is_below(const ImageView& image, std::uint32_t piece, std::uint32_t top) no
 /// the child that holds them.
 void inherit(const PairState& pair, const Node& parent, Node& child) noexcept {
   hand_over(parent, child);
-  if (has_dived(child) && !(is_below(*pair.image_a, child.leaf_a, child.piece_a) &&
-                            is_below(*pair.image_b, child.leaf_b, child.piece_b))) {
+  if (holds_finer(child) && !(is_below(*pair.image_a, child.leaf_a, child.piece_a) &&
+                              is_below(*pair.image_b, child.leaf_b, child.piece_b))) {
     child.contact = 0;
   }
   child.s_star = parent.s_star;
@@ -88,14 +88,12 @@ void doubt(const Work& work, Node& node, bool refines) noexcept {
   node.contact = work.rules.exact && refines && node.contact != 0 ? kDoubtful : 0;
 }
 
-/// Keeps the contact of two pieces in the node, and reports it where refinement stops here and does
-/// not dive. One of finer pieces, that a dive found before or that was remembered (recall.hpp),
-/// stays while it is one: it is the better guess.
+/// Keeps the contact of two pieces in the node, and reports it where refinement stops here. One of
+/// finer pieces that was remembered (recall.hpp) stays while it is one: it is the better guess.
 /// @return what leaf_contact() says; nothing where it was not asked
 LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops) noexcept {
-  const bool dives = work.dives(node);
   const bool coarser = work.rules.exact && !stops;
-  if ((dives || coarser) && has_dived(node) &&
+  if (coarser && holds_finer(node) &&
       remeasured(work.pair_of(node), node).distance < work.pair_of(node).delta)
     return {};
   const PairState& pair = work.pair_of(node);
@@ -116,7 +114,7 @@ LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops)
   if (contact.distance >= pair.delta) return contact;
   keep(pair, a, b, contact, node);
   remember(work, node);
-  if (stops && !dives) work.add_contact(node, contact);
+  if (stops) work.add_contact(node, contact);
   return contact;
 }
 
@@ -126,7 +124,7 @@ LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops)
 void refine_hidden(const Work& work, const Node& node, const convex::Distance& d,
                    const LeafContact& contact, Detail& missing) noexcept {
   const PairState& pair = work.pair_of(node);
-  if (work.dives(node) || pair.nearest <= d.distance + kEqual) return;
+  if (pair.nearest <= d.distance + kEqual) return;
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
   missing.refine_a = contact.hidden_a && is_simplified(a) && a.children != 0;
@@ -183,7 +181,7 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
         refines && convex::overlaps(d) ? LeafContact{} : touch(work, node, d, !refines);
     if (!refines) refine_hidden(work, node, d, contact, missing);
     refines = missing.refine_a || missing.refine_b;
-  } else if (!work.dives(node) || !has_dived(node)) {
+  } else {
     doubt(work, node, refines);
   }
   if (refines) {

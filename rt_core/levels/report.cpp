@@ -92,9 +92,9 @@ bool Report::add(const PairState& pair, Node& node, const LeafContact& contact) 
 Vec3d Report::centre_m(const PairState& pair, const Node& node,
                        const LeafContact& contact) const noexcept {
   const Vec3d middle = 0.5 * (contact.point_a + contact.point_b);
-  const bool dived = has_dived(node);
-  const image::Piece& a = pair.image_a->pieces[dived ? node.leaf_a : node.piece_a];
-  const image::Piece& b = pair.image_b->pieces[dived ? node.leaf_b : node.piece_b];
+  const bool finer = holds_finer(node);
+  const image::Piece& a = pair.image_a->pieces[finer ? node.leaf_a : node.piece_a];
+  const image::Piece& b = pair.image_b->pieces[finer ? node.leaf_b : node.piece_b];
   convex::PressureCentre centre;
   if (is_wide(a, pair.scale_a, pair.delta) && is_wide(b, pair.scale_b, pair.delta)) {
     const convex::Hull hull_a = hull_of(*pair.image_a, a, pair.scale_a);

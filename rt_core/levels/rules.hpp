@@ -14,7 +14,6 @@ namespace palpate::levels {
 struct Rules {
   bool exact = false;
   bool interpolate = true;
-  bool contact_dive = false;
   bool front_tracking = true;
   bool motion_bounds = true;
   bool root_short_cut = true;

@@ -18,10 +18,8 @@ inline constexpr std::uint8_t kMeasured = 1;  ///< this tick
 inline constexpr std::uint8_t kStopped = 2;  ///< this tick: near, and no detail missing can be felt
 inline constexpr std::uint8_t kRefineA = 4;  ///< this tick: near, and a is to be refined
 inline constexpr std::uint8_t kRefineB = 8;
-inline constexpr std::uint8_t kDived =
-    16;  ///< this tick: has looked for a contact of original pieces
-inline constexpr std::uint8_t kLooked = 32;  ///< measured in this round of a search (start.hpp)
-inline constexpr std::uint8_t kOfThisTick = kMeasured | kStopped | kRefineA | kRefineB | kDived;
+inline constexpr std::uint8_t kLooked = 16;  ///< measured in this round of a search (start.hpp)
+inline constexpr std::uint8_t kOfThisTick = kMeasured | kStopped | kRefineA | kRefineB;
 
 /// Node::contact.
 inline constexpr std::uint8_t kFound = 1;  ///< a query, perhaps of an ancestor, gave a contact
@@ -61,7 +59,7 @@ struct alignas(64) Node {
   float slack = 0;    ///< the original surfaces are at most this farther apart than the witnesses
   float s_star = 0;   ///< eq. 7; an ancestor's until the node is measured
   float excess = 0;   ///< Detail::excess
-  /// Whose contact is kept, where a dive found it (dive.hpp); else kNone
+  /// Whose contact is kept, where it was remembered (recall.hpp); else kNone
   std::uint32_t leaf_a = kNone;
   std::uint32_t leaf_b = kNone;
   // Warm starts.
@@ -77,8 +75,8 @@ inline void clear(Node& node, std::uint8_t flags) noexcept {
   node.flags = static_cast<std::uint8_t>(node.flags & ~flags);
 }
 
-/// Keeps a contact of original pieces, found by a dive.
-inline bool has_dived(const Node& node) noexcept {
+/// Keeps a contact of finer pieces.
+inline bool holds_finer(const Node& node) noexcept {
   return node.contact != 0 && node.leaf_a != kNone;
 }
 

@@ -89,7 +89,7 @@ void tighten(Work& work) noexcept {
   if (work.rules.exact || work.rules.bounds == Bounds::paper) return;
   for (const std::uint32_t index : work.stopped.all()) {
     const Node& node = work.tree[index];
-    if (!work.tree.in_front(index) || work.dives(node)) continue;
+    if (!work.tree.in_front(index)) continue;
     if (!work.probe.has_tighter(work.pair_of(node), node)) continue;
     const double certain_m = work.certain_m(node);
     work.waiting.push({certain_m, certain_m, index, false});

@@ -23,7 +23,7 @@ bool Work::rests_apart(Node& node, const convex::Distance& own) noexcept {
     static_cast<void>(probe.cull(pair, node));
   }
   const double certain = certain_now(pair, node);
-  const bool own_counts = own.lower_bound < certain && !rules.exact && !dives(node);
+  const bool own_counts = own.lower_bound < certain && !rules.exact;
   set_rest(pair, node, own_counts ? own.lower_bound : certain);
   return !is_near(node);
 }
@@ -64,14 +64,6 @@ void Work::leave_doubtful(std::uint32_t index) noexcept {
   const PairState& pair = pair_of(node);
   if (node.contact == kDoubtful && pair.nearest >= pair.delta)
     add_contact(node, remeasured(pair, node));
-}
-
-bool Work::dives(const Node& node) const noexcept {
-  if (!rules.contact_dive || rules.exact) return false;
-  const PairState& pair = pair_of(node);
-  const image::Piece& a = piece_a(pair, node);
-  const image::Piece& b = piece_b(pair, node);
-  return (a.children != 0 && is_simplified(a)) || (b.children != 0 && is_simplified(b));
 }
 
 void Work::note_cap(const PairState& pair, const LeafContact& contact) noexcept {

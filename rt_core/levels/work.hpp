@@ -72,9 +72,6 @@ struct Work {
   /// What is left after all nodes: a doubtful contact where its bodies have none.
   void leave_doubtful(std::uint32_t index) noexcept;
 
-  /// A node whose contact a dive looks for where refinement stops at it (dive.hpp).
-  [[nodiscard]] bool dives(const Node& node) const noexcept;
-
   /// Notes an iteration cap met by a contact of original pieces, for the certificate.
   void note_cap(const PairState& pair, const LeafContact& contact) noexcept;
 

@@ -95,19 +95,16 @@ TEST(EngineOrder, no_contact_is_lost_once_the_budget_leads_down_to_one) {
 
 TEST(EngineOrder, without_a_budget_the_order_changes_nothing) {
   for (const bool exact : {false, true}) {
-    for (const bool dives : {false, true}) {
-      Settings by_force = settings(Order::force);
-      by_force.exact = exact;
-      by_force.contact_dive = dives;
-      Settings by_deviation = by_force;
-      by_deviation.order = Order::deviation;
-      const std::vector<TickResult> one = answers(by_force, {});
-      const std::vector<TickResult> other = answers(by_deviation, {});
-      for (std::size_t i = 0; i < one.size(); ++i) {
-        EXPECT_EQ(one[i].queries, other[i].queries);
-        EXPECT_EQ(one[i].wrench.force_N.x, other[i].wrench.force_N.x);
-        EXPECT_EQ(one[i].certificate.error_bound_m, other[i].certificate.error_bound_m);
-      }
+    Settings by_force = settings(Order::force);
+    by_force.exact = exact;
+    Settings by_deviation = by_force;
+    by_deviation.order = Order::deviation;
+    const std::vector<TickResult> one = answers(by_force, {});
+    const std::vector<TickResult> other = answers(by_deviation, {});
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      EXPECT_EQ(one[i].queries, other[i].queries);
+      EXPECT_EQ(one[i].wrench.force_N.x, other[i].wrench.force_N.x);
+      EXPECT_EQ(one[i].certificate.error_bound_m, other[i].certificate.error_bound_m);
     }
   }
 }
@@ -121,7 +118,6 @@ TEST(EngineOrder, certificate_is_true_with_any_order) {
         Settings with = settings(order);
         with.exact = false;
         with.s0 = s0;
-        with.contact_dive = s0 > 0;
         const std::vector<TickResult> found = answers(with, {.units = units});
         for (std::size_t i = 0; i < found.size(); ++i) expect_certified(found[i], truth[i], kDelta);
       }

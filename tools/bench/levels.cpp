@@ -57,13 +57,7 @@ constexpr Variant kSimplified[] = {
        s.stop_on_surface = true;
      }},
     {"s0 = 0.025", [](Settings&) {}},
-    {"s0 = 0.025, dives", [](Settings& s) { s.contact_dive = true; }},
     {"s0 = 0.2", [](Settings& s) { s.s0 = 0.2; }},
-    {"s0 = 0.2, dives",
-     [](Settings& s) {
-       s.s0 = 0.2;
-       s.contact_dive = true;
-     }},
     {"s0 = 0.025, stop on surface", [](Settings& s) { s.stop_on_surface = true; }},
     {"s0 = 0.025, bounds = paper", [](Settings& s) { s.bounds = Bounds::paper; }},
     {"s0 = 0.025, no motion bounds", [](Settings& s) { s.motion_bounds = false; }},
@@ -73,12 +67,6 @@ constexpr Variant kSimplified[] = {
      [](Settings& s) {
        s.s0 = 1e6;
        s.kappa = 0.1;
-     }},
-    {"kappa = 0.1, dives",
-     [](Settings& s) {
-       s.s0 = 1e6;
-       s.kappa = 0.1;
-       s.contact_dive = true;
      }},
     {"kappa = 0.1, stop on surface", [](Settings& s) {
        s.s0 = 1e6;
@@ -184,8 +172,7 @@ constexpr Variant kUnderBudget[] = {
      }},
     {"s0 = 0", [](Settings& s) { s.s0 = 0; }},
     {"s0 = 0.025", [](Settings&) {}},
-    {"s0 = 0.025, order = deviation", [](Settings& s) { s.order = Order::deviation; }},
-    {"s0 = 0.025, dives", [](Settings& s) { s.contact_dive = true; }}};
+    {"s0 = 0.025, order = deviation", [](Settings& s) { s.order = Order::deviation; }}};
 
 void by_budget(const Place& at, const Body& a, const Body& b, const std::vector<Pose>& poses) {
   const Run truth = run(a, b, {.delta_m = at.delta_m, .exact = true}, poses, Budget{}.units);
