@@ -47,10 +47,6 @@ constexpr Key<Scene> kEngineKeys[] = {
      "brought them within `delta_m`"},
     {"root_short_cut", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.root_short_cut; }},
      "`levels`: bodies whose hulls are `delta_m` or more apart cost one query"},
-    {"stop_on_surface", "",
-     Flag<Scene>{[](Scene& s) -> bool& { return s.settings.stop_on_surface; }},
-     "`levels`: one contact, and no further refinement, where the closest features of two pieces "
-     "lie on the original surfaces; nothing with `exact` or the paper's bounds"},
     {"bounds", "",
      Choice<Scene>{kBounds,
                    [](Scene& s, std::size_t i) { s.settings.bounds = static_cast<Bounds>(i); },

@@ -35,7 +35,6 @@ levels::Rules rules_of(const Settings& settings) noexcept {
           .front_tracking = settings.front_tracking,
           .motion_bounds = settings.motion_bounds,
           .root_short_cut = settings.root_short_cut,
-          .stop_on_surface = settings.stop_on_surface,
           .bounds = settings.bounds,
           .order = settings.order,
           .s0 = settings.s0,

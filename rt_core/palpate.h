@@ -60,10 +60,9 @@ typedef struct palpate_settings {
   uint32_t interpolate;
   uint32_t bounds;
   uint32_t order;
-  uint32_t front_tracking; /* 0 or 1, and the next three */
+  uint32_t front_tracking; /* 0 or 1, and the next two */
   uint32_t motion_bounds;
   uint32_t root_short_cut;
-  uint32_t stop_on_surface;
   double delta_m;
   double s0;
   double kappa; /* infinity: no such rule */

@@ -65,8 +65,7 @@ Limits limits_of(const palpate_limits& from) noexcept {
 bool settings_of(const palpate_settings& from, Settings& out) noexcept {
   if (from.engine > PALPATE_REGIONS || from.exact > 1 || from.interpolate > 1 ||
       from.bounds > PALPATE_BOUNDS_PAPER || from.order > PALPATE_BY_FORCE ||
-      from.front_tracking > 1 || from.motion_bounds > 1 || from.root_short_cut > 1 ||
-      from.stop_on_surface > 1) {
+      from.front_tracking > 1 || from.motion_bounds > 1 || from.root_short_cut > 1) {
     return false;
   }
   out.engine = static_cast<EngineKind>(from.engine);
@@ -77,7 +76,6 @@ bool settings_of(const palpate_settings& from, Settings& out) noexcept {
   out.front_tracking = from.front_tracking != 0;
   out.motion_bounds = from.motion_bounds != 0;
   out.root_short_cut = from.root_short_cut != 0;
-  out.stop_on_surface = from.stop_on_surface != 0;
   out.delta_m = from.delta_m;
   out.s0 = from.s0;
   out.kappa = from.kappa;
@@ -205,7 +203,6 @@ void palpate_default_settings(palpate_settings* out) {
           s.front_tracking ? 1u : 0u,
           s.motion_bounds ? 1u : 0u,
           s.root_short_cut ? 1u : 0u,
-          s.stop_on_surface ? 1u : 0u,
           s.delta_m,
           s.s0,
           s.kappa,

@@ -74,16 +74,12 @@ struct Settings {
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
 
   // Fewer pairs (levels engine). Each can be switched alone, so that its effect can be measured.
-  // The first three never change which pairs are near; the last one leaves contacts out.
+  // None changes which pairs are near.
   bool front_tracking = true;  ///< start from the last tick's front; off: from the roots each tick
   /// Skip a pair while its last proved distance, less the motion since, is delta or more; off:
   /// every pair of the front is measured in every tick.
   bool motion_bounds = true;
   bool root_short_cut = true;  ///< where the root hulls are delta or more apart, measure no others
-  /// Stop at a pair whose closest features already lie on both original surfaces: one contact there
-  /// instead of all below it. The least distance stays as certified; no effect where `exact` is set
-  /// or bounds are the paper's.
-  bool stop_on_surface = false;
 
   /// Regions engine: refinement may end once the certified error of the force is no more; 0: exact.
   /// Whether two bodies touch is decided all the same, as far as a budget goes.

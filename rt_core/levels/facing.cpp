@@ -11,6 +11,9 @@ using image::Piece;
 using image::PieceFlag;
 using image::Triangle;
 
+/// A point this near to a triangle of a patch lies on it. Baked vertices are rounded to 6e-8 and
+/// hulls are checked against the mesh to 1e-7.
+constexpr double kOnSurface = 1e-6;
 /// Of delta: patches that overlap by less have only just met.
 constexpr double kJustMet = 0.25;
 /// Squareness from which on they may have.

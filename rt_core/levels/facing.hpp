@@ -6,10 +6,6 @@
 
 namespace palpate::levels {
 
-/// A point this near to a triangle of a patch lies on it. Baked vertices are rounded to 6e-8 and
-/// hulls are checked against the mesh to 1e-7.
-inline constexpr double kOnSurface = 1e-6;
-
 /// A way to part the hulls of a and b, in the coordinates of a: moving a by depth * normal takes
 /// point_a out of b.
 struct Way {

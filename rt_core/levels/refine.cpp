@@ -5,7 +5,6 @@
 #include "rt_core/levels/leaf_contact.hpp"
 #include "rt_core/levels/recall.hpp"
 #include "rt_core/levels/start.hpp"
-#include "rt_core/levels/surface_stop.hpp"
 
 namespace palpate::levels {
 namespace {
@@ -75,13 +74,6 @@ void split(Work& work, std::uint32_t index) noexcept {
 
 void stop(Work& work, std::uint32_t index) noexcept { work.stopped.add(work.tree[index], index); }
 
-void stop_on_surface(Work& work, std::uint32_t index, const LeafContact& contact) noexcept {
-  Node& node = work.tree[index];
-  keep_on_surface(work.pair_of(node), node, contact);
-  work.add_contact(node, contact);
-  stop(work, index);
-}
-
 /// The contact kept until now is none, or in an exact query none for sure only where the pieces are
 /// the original ones.
 void doubt(const Work& work, Node& node, bool refines) noexcept {
@@ -137,17 +129,15 @@ void measure_bound(Work& work, std::uint32_t index) noexcept {
   const PairState& pair = work.pair_of(node);
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
-  const SurfaceStop surface = probe_surface(work, node);
+  static_cast<void>(work.probe.cull(pair, node, Ask::nearness));
   set_rest(pair, node, certain_now(pair, node));
   if (!work.is_near(node)) {
     node.contact = 0;
-  } else if (surface.stops) {
-    stop_on_surface(work, index, surface.contact);
-  } else {
-    const bool all = work.rules.exact;
-    allow(node, a.children != 0 && (all || is_free(a)), b.children != 0 && (all || is_free(b)));
-    split(work, index);
+    return;
   }
+  const bool all = work.rules.exact;
+  allow(node, a.children != 0 && (all || is_free(a)), b.children != 0 && (all || is_free(b)));
+  split(work, index);
 }
 
 void measure_metric(Work& work, std::uint32_t index) noexcept {
@@ -168,13 +158,6 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
     return;
   }
   bool refines = missing.refine_a || missing.refine_b;
-  if (refines && may_stop_on_surface(work, node) && !work.out_of_budget()) {
-    const SurfaceStop surface = probe_surface(work, node);
-    if (surface.stops) {
-      stop_on_surface(work, index, surface.contact);
-      return;
-    }
-  }
   if (d.lower_bound < pair.delta) {
     // Overlap of simplified hulls is no contact: the last one, of an ancestor apart, stands.
     const LeafContact contact =

@@ -17,7 +17,6 @@ struct Rules {
   bool front_tracking = true;
   bool motion_bounds = true;
   bool root_short_cut = true;
-  bool stop_on_surface = false;
   Bounds bounds = Bounds::tight;
   Order order = Order::deviation;
   double s0 = 0;

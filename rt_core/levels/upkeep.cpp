@@ -2,7 +2,6 @@
 #include "rt_core/levels/upkeep.hpp"
 
 #include "rt_core/levels/interpolate.hpp"
-#include "rt_core/levels/surface_stop.hpp"
 
 namespace palpate::levels {
 namespace {
@@ -43,19 +42,6 @@ bool raise_at_rest(Work& work, std::uint32_t parent) noexcept {
   return true;
 }
 
-/// The contacts below it are this tick's; from the next one on there is its own.
-bool raise_to_surface(Work& work, std::uint32_t parent) noexcept {
-  Node& node = work.tree[parent];
-  if (!may_stop_on_surface(work, node) || !work.is_near(node)) return false;
-  const SurfaceStop surface = probe_surface(work, node);
-  if (!surface.stops) return false;
-  work.tree.collapse(parent);
-  keep_on_surface(work.pair_of(node), node, surface.contact);
-  clear(node, kOfThisTick);
-  work.stopped.add(node, parent);
-  return true;
-}
-
 void renew_detail(Work& work, std::uint32_t parent) noexcept {
   Node& node = work.tree[parent];
   if (!work.rules.interpolate || work.rules.exact || !may_mix(work, node) || !work.is_near(node))
@@ -79,8 +65,7 @@ void raise(Work& work) noexcept {
     if (next >= tree.front().size()) next = 0;
     const std::uint32_t parent = tree[tree.front()[next++]].parent;
     if (parent == kNone) continue;
-    const bool raised = children_in_front(tree, tree[parent]) &&
-                        (raise_at_rest(work, parent) || raise_to_surface(work, parent));
+    const bool raised = children_in_front(tree, tree[parent]) && raise_at_rest(work, parent);
     if (!raised && !work.out_of_budget()) renew_detail(work, parent);
   }
 }

@@ -51,27 +51,15 @@ constexpr Variant kExact[] = {
 
 constexpr Variant kSimplified[] = {
     {"s0 = 0", [](Settings& s) { s.s0 = 0; }},
-    {"s0 = 0, stop on surface",
-     [](Settings& s) {
-       s.s0 = 0;
-       s.stop_on_surface = true;
-     }},
     {"s0 = 0.025", [](Settings&) {}},
     {"s0 = 0.2", [](Settings& s) { s.s0 = 0.2; }},
-    {"s0 = 0.025, stop on surface", [](Settings& s) { s.stop_on_surface = true; }},
     {"s0 = 0.025, bounds = paper", [](Settings& s) { s.bounds = Bounds::paper; }},
     {"s0 = 0.025, no motion bounds", [](Settings& s) { s.motion_bounds = false; }},
     {"s0 = 0.025, no front tracking", [](Settings& s) { s.front_tracking = false; }},
     {"s0 = 0.025, no interpolation", [](Settings& s) { s.interpolate = false; }},
-    {"kappa = 0.1",
-     [](Settings& s) {
+    {"kappa = 0.1", [](Settings& s) {
        s.s0 = 1e6;
        s.kappa = 0.1;
-     }},
-    {"kappa = 0.1, stop on surface", [](Settings& s) {
-       s.s0 = 1e6;
-       s.kappa = 0.1;
-       s.stop_on_surface = true;
      }}};
 
 struct Run {
