@@ -89,7 +89,6 @@ void Probe::note(const convex::Distance& d) noexcept {
 }
 
 double Probe::rest_margin(const PairState& pair, const Node& node) const noexcept {
-  if (!rules_.motion_bounds) return 0;
   const double margin =
       kRestTicks * (pair.last_travel + pair.last_turn * static_cast<double>(node.reach));
   const double most = kRestShare * pair.delta;

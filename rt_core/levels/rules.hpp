@@ -14,9 +14,6 @@ namespace palpate::levels {
 struct Rules {
   bool exact = false;
   bool interpolate = true;
-  bool front_tracking = true;
-  bool motion_bounds = true;
-  bool root_short_cut = true;
   Bounds bounds = Bounds::tight;
   Order order = Order::deviation;
   double s0 = 0;

@@ -51,7 +51,6 @@ void restart(Work& work, PairState& pair) noexcept {
 void rise_if_apart(Work& work, PairState& pair) noexcept {
   Node& root = work.tree[pair.root];
   if (work.tree.in_front(pair.root) || work.out_of_budget()) return;
-  if (!work.rules.motion_bounds) begin(pair, root, -kInfinity);
   if (work.is_near(root) && !work.rests(root)) return;
   work.tree.collapse(pair.root);
   root.contact = 0;
@@ -63,9 +62,9 @@ void place(Work& work, PairState& pair) noexcept {
   pair.apart = -kInfinity;
   const Node& root = work.tree[pair.root];
   const bool apart = sphere_distance(pair, piece_a(pair, root), piece_b(pair, root)) >= pair.delta;
-  if (pair.fresh || apart || !work.rules.front_tracking || jumped(pair)) {
+  if (pair.fresh || apart || jumped(pair)) {
     restart(work, pair);
-  } else if (work.rules.root_short_cut) {
+  } else {
     rise_if_apart(work, pair);
   }
   pair.apart = certain_now(pair, root);
@@ -74,7 +73,6 @@ void place(Work& work, PairState& pair) noexcept {
 /// Where the motion bound has run out the spheres may still do: they cost no query.
 void renew(Work& work, Node& node) noexcept {
   const PairState& pair = work.pair_of(node);
-  if (!work.rules.motion_bounds) return begin(pair, node, -kInfinity);
   if (!work.is_near(node)) return;
   const double spheres = sphere_distance(pair, piece_a(pair, node), piece_b(pair, node));
   if (spheres - kSphereRounding > certain_now(pair, node))
@@ -265,15 +263,11 @@ void wait_if_near(Work& work, std::uint32_t index) noexcept {
 double rank(const Work& work, const Node& node, double lower) noexcept {
   const PairState& pair = work.pair_of(node);
   if (pair.searches) return search_rank(pair, node, lower);
-  const Order order = work.rules.order;
-  if ((work.rules.exact && !work.may_end) || order == Order::nearest) return lower;
-  if (order == Order::force && work.may_end) return lower - known_distance(pair, node);
+  if (work.rules.exact && !work.may_end) return lower;
+  if (work.rules.order == Order::force && work.may_end) return lower - known_distance(pair, node);
   // What is missing counts for no more than what the parent missed: refinement has an order.
   const float of_parent = node.parent == kNone ? node.s_star : work.tree[node.parent].s_star;
-  const double s = static_cast<double>(node.s_star < of_parent ? node.s_star : of_parent);
-  if (order != Order::ratio) return -s;
-  constexpr double kLeastDistance = 1e-9;
-  return -s / (lower > kLeastDistance ? lower : kLeastDistance);
+  return -static_cast<double>(node.s_star < of_parent ? node.s_star : of_parent);
 }
 
 }  // namespace palpate::levels

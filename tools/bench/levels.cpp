@@ -40,22 +40,13 @@ struct Variant {
 
 constexpr Variant kExact[] = {
     {"exact", [](Settings&) {}},
-    {"exact, bounds = paper", [](Settings& s) { s.bounds = Bounds::paper; }},
-    {"exact, no motion bounds", [](Settings& s) { s.motion_bounds = false; }},
-    {"exact, no front tracking", [](Settings& s) { s.front_tracking = false; }},
-    {"exact, no root short cut", [](Settings& s) { s.root_short_cut = false; }},
-    {"exact, none of the four", [](Settings& s) {
-       s.bounds = Bounds::paper;
-       s.motion_bounds = s.front_tracking = s.root_short_cut = false;
-     }}};
+    {"exact, bounds = paper", [](Settings& s) { s.bounds = Bounds::paper; }}};
 
 constexpr Variant kSimplified[] = {
     {"s0 = 0", [](Settings& s) { s.s0 = 0; }},
     {"s0 = 0.025", [](Settings&) {}},
     {"s0 = 0.2", [](Settings& s) { s.s0 = 0.2; }},
     {"s0 = 0.025, bounds = paper", [](Settings& s) { s.bounds = Bounds::paper; }},
-    {"s0 = 0.025, no motion bounds", [](Settings& s) { s.motion_bounds = false; }},
-    {"s0 = 0.025, no front tracking", [](Settings& s) { s.front_tracking = false; }},
     {"s0 = 0.025, no interpolation", [](Settings& s) { s.interpolate = false; }},
     {"kappa = 0.1", [](Settings& s) {
        s.s0 = 1e6;
@@ -147,16 +138,6 @@ constexpr Variant kUnderBudget[] = {
      [](Settings& s) {
        s.exact = true;
        s.order = Order::deviation;
-     }},
-    {"exact, order = nearest",
-     [](Settings& s) {
-       s.exact = true;
-       s.order = Order::nearest;
-     }},
-    {"exact, order = ratio",
-     [](Settings& s) {
-       s.exact = true;
-       s.order = Order::ratio;
      }},
     {"s0 = 0", [](Settings& s) { s.s0 = 0; }},
     {"s0 = 0.025", [](Settings&) {}},
