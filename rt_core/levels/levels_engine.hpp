@@ -19,26 +19,12 @@
 
 namespace palpate::levels {
 
-/// A pair of pieces that has touched (recall.hpp), and where.
-struct Touch {
-  std::uint32_t a = kNone;
-  std::uint32_t b = kNone;
-  Vec3f point_a{};  ///< in the coordinates of a
-  Vec3f point_b{};  ///< in those of b
-  Vec3f normal{};   ///< where its queries begin; in the coordinates of a
-  convex::Cache own;
-};
-/// Remembered of a pair of bodies.
-inline constexpr std::uint32_t kTouchBits = 8;
-inline constexpr std::uint32_t kTouches = 1u << kTouchBits;
-
 /// Memory of the query, borrowed from the engine.
 struct QueryMemory {
   std::span<PairState> pairs;
   TestTree tree;
   std::span<Waiting> waiting;        ///< [nodes]
   std::span<std::uint32_t> stopped;  ///< [nodes]; those that refinement stopped at in this tick
-  std::span<Touch> touches;          ///< [kTouches for each pair]
   std::span<Contact> contacts;       ///< [limits.contacts]
   convex::PenetrationScratch* scratch = nullptr;
   convex::PressureScratch* pressure = nullptr;

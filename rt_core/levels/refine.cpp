@@ -3,7 +3,6 @@
 
 #include "rt_core/levels/interpolate.hpp"
 #include "rt_core/levels/leaf_contact.hpp"
-#include "rt_core/levels/recall.hpp"
 #include "rt_core/levels/start.hpp"
 
 namespace palpate::levels {
@@ -24,25 +23,12 @@ void wait_for_split(Work& work, std::uint32_t index) noexcept {
   const Node& node = work.tree[index];
   const PairState& pair = work.pair_of(node);
   const double certain = certain_now(pair, node);
-  work.wait({rank(work, node, certain), certain * pair.unit_m, index, !pair.searches});
+  work.wait({rank(work, node, certain), certain * pair.unit_m, index, true});
 }
 
-bool is_below(const ImageView& image, std::uint32_t piece, std::uint32_t top) noexcept {
-  for (std::uint32_t level = 0; piece != kNone && level <= image::kMaxLevels; ++level) {
-    if (piece == top) return true;
-    piece = image.pieces[piece].parent;
-  }
-  return false;
-}
-
-/// Until it is measured, a child stands where its parent did; a contact of original pieces goes to
-/// the child that holds them.
-void inherit(const PairState& pair, const Node& parent, Node& child) noexcept {
+/// Until it is measured, a child stands where its parent did.
+void inherit(const Node& parent, Node& child) noexcept {
   hand_over(parent, child);
-  if (holds_finer(child) && !(is_below(*pair.image_a, child.leaf_a, child.piece_a) &&
-                              is_below(*pair.image_b, child.leaf_b, child.piece_b))) {
-    child.contact = 0;
-  }
   child.s_star = parent.s_star;
 }
 
@@ -67,7 +53,7 @@ void split(Work& work, std::uint32_t index) noexcept {
   for (std::uint32_t c = parent.first_child; c != kNone; c = work.tree[c].next_sibling) {
     Node& child = work.tree[c];
     begin(pair, child, certain_now(pair, parent));
-    inherit(pair, parent, child);
+    inherit(parent, child);
     wait_if_near(work, c);
   }
 }
@@ -80,14 +66,9 @@ void doubt(const Work& work, Node& node, bool refines) noexcept {
   node.contact = work.rules.exact && refines && node.contact != 0 ? kDoubtful : 0;
 }
 
-/// Keeps the contact of two pieces in the node, and reports it where refinement stops here. One of
-/// finer pieces that was remembered (recall.hpp) stays while it is one: it is the better guess.
-/// @return what leaf_contact() says; nothing where it was not asked
+/// Keeps the contact of two pieces in the node, and reports it where refinement stops here.
+/// @return what leaf_contact() says
 LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops) noexcept {
-  const bool coarser = work.rules.exact && !stops;
-  if (coarser && holds_finer(node) &&
-      remeasured(work.pair_of(node), node).distance < work.pair_of(node).delta)
-    return {};
   const PairState& pair = work.pair_of(node);
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
@@ -105,7 +86,6 @@ LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops)
   work.note_cap(pair, contact);
   if (contact.distance >= pair.delta) return contact;
   keep(pair, a, b, contact, node);
-  remember(work, node);
   if (stops) work.add_contact(node, contact);
   return contact;
 }
@@ -179,7 +159,6 @@ void measure(Work& work, std::uint32_t index) noexcept {
   Node& node = work.tree[index];
   const PairState& pair = work.pair_of(node);
   set(node, kMeasured);
-  if (pair.searches) set(node, kLooked);
   const bool leaves = piece_a(pair, node).children == 0 && piece_b(pair, node).children == 0;
   if (!leaves && work.only_culls(node)) {
     measure_bound(work, index);

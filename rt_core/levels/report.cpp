@@ -42,7 +42,6 @@ bool is_wide(const image::Piece& piece, double scale, double delta) noexcept {
 void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
           const LeafContact& contact, Node& node) noexcept {
   node.contact = kFound;
-  node.leaf_a = node.leaf_b = kNone;
   node.witness_a = vec_cast<float>(contact.point_a);
   node.witness_b = vec_cast<float>(to_b(pair, contact.point_b));
   const double share = contact.share > kLeastShare ? contact.share : kLeastShare;
@@ -92,9 +91,8 @@ bool Report::add(const PairState& pair, Node& node, const LeafContact& contact) 
 Vec3d Report::centre_m(const PairState& pair, const Node& node,
                        const LeafContact& contact) const noexcept {
   const Vec3d middle = 0.5 * (contact.point_a + contact.point_b);
-  const bool finer = holds_finer(node);
-  const image::Piece& a = pair.image_a->pieces[finer ? node.leaf_a : node.piece_a];
-  const image::Piece& b = pair.image_b->pieces[finer ? node.leaf_b : node.piece_b];
+  const image::Piece& a = piece_a(pair, node);
+  const image::Piece& b = piece_b(pair, node);
   convex::PressureCentre centre;
   if (is_wide(a, pair.scale_a, pair.delta) && is_wide(b, pair.scale_b, pair.delta)) {
     const convex::Hull hull_a = hull_of(*pair.image_a, a, pair.scale_a);

@@ -28,8 +28,6 @@ inline void hand_over(const Node& from, Node& to) noexcept {
   to.witness_b = from.witness_b;
   to.normal = from.normal;
   to.slack = from.slack;
-  to.leaf_a = from.leaf_a;
-  to.leaf_b = from.leaf_b;
 }
 
 /// The contact kept in a node, measured again at its material points, with its normal as it turned

@@ -18,7 +18,6 @@ inline constexpr std::uint8_t kMeasured = 1;  ///< this tick
 inline constexpr std::uint8_t kStopped = 2;  ///< this tick: near, and no detail missing can be felt
 inline constexpr std::uint8_t kRefineA = 4;  ///< this tick: near, and a is to be refined
 inline constexpr std::uint8_t kRefineB = 8;
-inline constexpr std::uint8_t kLooked = 16;  ///< measured in this round of a search (start.hpp)
 inline constexpr std::uint8_t kOfThisTick = kMeasured | kStopped | kRefineA | kRefineB;
 
 /// Node::contact.
@@ -59,9 +58,6 @@ struct alignas(64) Node {
   float slack = 0;    ///< the original surfaces are at most this farther apart than the witnesses
   float s_star = 0;   ///< eq. 7; an ancestor's until the node is measured
   float excess = 0;   ///< Detail::excess
-  /// Whose contact is kept, where it was remembered (recall.hpp); else kNone
-  std::uint32_t leaf_a = kNone;
-  std::uint32_t leaf_b = kNone;
   // Warm starts.
   convex::Cache own;      ///< of the pieces' hulls
   convex::Cache culling;  ///< of their culling hulls
@@ -73,11 +69,6 @@ inline void set(Node& node, std::uint8_t flags) noexcept {
 }
 inline void clear(Node& node, std::uint8_t flags) noexcept {
   node.flags = static_cast<std::uint8_t>(node.flags & ~flags);
-}
-
-/// Keeps a contact of finer pieces.
-inline bool holds_finer(const Node& node) noexcept {
-  return node.contact != 0 && node.leaf_a != kNone;
 }
 
 /// A fixed pool of nodes, one tree for every body pair, all fronts in one array. A node is replaced

@@ -79,7 +79,6 @@ void Work::add_contact(Node& node, const LeafContact& contact) noexcept {
   PairState& pair = pair_of(node);
   if (contact.distance >= pair.delta) return;
   if (contact.distance < pair.nearest) pair.nearest = contact.distance;
-  pair.searches = false;
   if (node.report != kNone) return report.replace(pair, node, contact);
   if (report.add(pair, node, contact)) return leave_time_for_contacts();
   result.truncated_by_memory = true;

@@ -31,11 +31,11 @@ constexpr double kDelta_m = 0.05;
 constexpr std::uint64_t kUnlimited = Budget{}.units;
 const Case kCases[] = {
     {"exact", {.delta_m = kDelta_m, .exact = true}, kUnlimited, 0x15a7de31e62c506a},
-    {"exact, 40 units", {.delta_m = kDelta_m, .exact = true}, 40, 0xaeff4d46d813d404},
+    {"exact, 40 units", {.delta_m = kDelta_m, .exact = true}, 40, 0xf36c84a2c4deb88b},
     {"exact, 40 units, by deviation",
      {.delta_m = kDelta_m, .exact = true, .order = Order::deviation},
      40,
-     0x0b1d92e34c7e10aa},
+     0x454ba9acd2dbbb64},
     {"simplified", {.delta_m = kDelta_m, .s0 = 0.02}, kUnlimited, 0x9277c8d7cd3a2520},
     {"simplified, 40 units", {.delta_m = kDelta_m, .s0 = 0.02}, 40, 0xf6be98cfb4baadbd},
     {"paper's bounds",
