@@ -60,7 +60,7 @@ class Group {
     work_.probe.charge_parts(contact.queries);
     if (contact.hidden_a || contact.hidden_b) return contact;
     if (!contact.found || contact.interrupted || contact.distance >= pair_.delta) return {};
-    keep(pair_, a, b, contact, parent_);
+    keep_contact(pair_, a, b, contact, parent_);
     return contact;
   }
 

@@ -31,7 +31,7 @@ void settle(Work& work) noexcept {
   for (const std::uint32_t index : work.stopped.all()) {
     const Node& node = work.tree[index];
     if (work.tree.in_front(index) && is_approximate(work, node)) {
-      work.leave_unresolved(work.certain_m(node), node);
+      work.leave_unresolved(work.certified_m(node), node);
     }
   }
 }
@@ -42,9 +42,9 @@ void finish(Work& work) noexcept {
   work.result.iteration_cap_met |= work.probe.iteration_cap_met();
 }
 
-void run(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally, Discipline discipline,
+void run(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally, Schedule schedule,
          QueryResult& out) noexcept {
-  Work work(memory, rules, meter, tally, discipline);
+  Work work(memory, rules, meter, tally, schedule);
   start(work);
   tally.lap(Stage::start, meter);
   refine_within_budget(work);
@@ -70,13 +70,13 @@ QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& 
   const bool endless = rules.exact && !meter.limited();
   QueryResult found;
   if (endless && !memory.short_of_room) {
-    run(memory, rules, meter, tally, Discipline::whole, found);
+    run(memory, rules, meter, tally, Schedule::exhaustive, found);
     if (!found.truncated_by_memory) return found;
     // What is nearest gets the memory, from the roots on.
     for (PairState& pair : memory.pairs) pair.fresh = true;
   }
   const std::uint64_t spent = found.queries;
-  run(memory, rules, meter, tally, Discipline::by_worth, found);
+  run(memory, rules, meter, tally, Schedule::by_priority, found);
   found.queries += spent;
   memory.short_of_room = endless && found.truncated_by_memory;
   return found;

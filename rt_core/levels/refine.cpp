@@ -22,13 +22,13 @@ void allow(Node& node, bool a, bool b) noexcept {
 void wait_for_split(Work& work, std::uint32_t index) noexcept {
   const Node& node = work.tree[index];
   const PairState& pair = work.pair_of(node);
-  const double certain = certain_now(pair, node);
-  work.wait({rank(work, node, certain), certain * pair.unit_m, index, true});
+  const double certified = certified_now(pair, node);
+  work.wait({rank(work, node, certified), certified * pair.unit_m, index, true});
 }
 
 /// Until it is measured, a child stands where its parent did.
 void inherit(const Node& parent, Node& child) noexcept {
-  hand_over(parent, child);
+  copy_contact(parent, child);
   child.s_star = parent.s_star;
 }
 
@@ -42,7 +42,7 @@ void split(Work& work, std::uint32_t index) noexcept {
   const Piece& piece = split_a ? a : b;
   if (!work.tree.split(index, split_a, piece.first_child, piece.children)) {
     work.result.truncated_by_memory = true;
-    work.leave(index, work.certain_m(parent));
+    work.leave(index, work.certified_m(parent));
     return;
   }
   work.tally.count([&](auto& counters) {
@@ -52,7 +52,7 @@ void split(Work& work, std::uint32_t index) noexcept {
   note_blending(work, index);
   for (std::uint32_t c = parent.first_child; c != kNone; c = work.tree[c].next_sibling) {
     Node& child = work.tree[c];
-    begin(pair, child, certain_now(pair, parent));
+    begin(pair, child, certified_now(pair, parent));
     inherit(parent, child);
     wait_if_near(work, c);
   }
@@ -68,7 +68,8 @@ void doubt(const Work& work, Node& node, bool refines) noexcept {
 
 /// Keeps the contact of two pieces in the node, and reports it where refinement stops here.
 /// @return what leaf_contact() says
-LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops) noexcept {
+LeafContact measure_contact(Work& work, Node& node, const convex::Distance& d,
+                            bool stops) noexcept {
   const PairState& pair = work.pair_of(node);
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
@@ -78,14 +79,14 @@ LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops)
   doubt(work, node, !stops);
   if (contact.interrupted) {
     work.result.truncated_by_units = true;
-    work.leave_unresolved(work.certain_m(node), node);
+    work.leave_unresolved(work.certified_m(node), node);
   }
   if (!contact.found) return contact;
   const bool original = !is_simplified(a) && !is_simplified(b);
   if (original && !contact.interrupted) prove(pair, node, contact.lower_bound);
   work.note_cap(pair, contact);
   if (contact.distance >= pair.delta) return contact;
-  keep(pair, a, b, contact, node);
+  keep_contact(pair, a, b, contact, node);
   if (stops) work.add_contact(node, contact);
   return contact;
 }
@@ -110,7 +111,7 @@ void measure_bound(Work& work, std::uint32_t index) noexcept {
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
   static_cast<void>(work.probe.cull(pair, node, Ask::nearness));
-  set_rest(pair, node, certain_now(pair, node));
+  set_lower_bound(pair, node, certified_now(pair, node));
   if (!work.is_near(node)) {
     node.contact = 0;
     return;
@@ -133,7 +134,7 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
   }
   node.s_star = static_cast<float>(missing.s_star);
   node.excess = static_cast<float>(missing.excess);
-  if (work.rests_apart(node, d)) {
+  if (work.proves_far(node, d)) {
     node.contact = 0;
     return;
   }
@@ -141,7 +142,7 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
   if (d.lower_bound < pair.delta) {
     // Overlap of simplified hulls is no contact: the last one, of an ancestor apart, stands.
     const LeafContact contact =
-        refines && convex::overlaps(d) ? LeafContact{} : touch(work, node, d, !refines);
+        refines && convex::overlaps(d) ? LeafContact{} : measure_contact(work, node, d, !refines);
     if (!refines) refine_hidden(work, node, d, contact, missing);
     refines = missing.refine_a || missing.refine_b;
   } else {

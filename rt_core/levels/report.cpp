@@ -39,8 +39,8 @@ bool is_wide(const image::Piece& piece, double scale, double delta) noexcept {
 
 }  // namespace
 
-void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
-          const LeafContact& contact, Node& node) noexcept {
+void keep_contact(const PairState& pair, const image::Piece& a, const image::Piece& b,
+                  const LeafContact& contact, Node& node) noexcept {
   node.contact = kFound;
   node.witness_a = vec_cast<float>(contact.point_a);
   node.witness_b = vec_cast<float>(to_b(pair, contact.point_b));
@@ -69,8 +69,8 @@ LeafContact remeasured(const PairState& pair, const Node& node) noexcept {
   const double guess =
       faded(along >= 0 ? contact.upper_bound : along + slid, contact.share, pair.delta);
   // Points that have slid past each other may look deep where it is proved that nothing is.
-  const double certain = certain_now(pair, node);
-  contact.distance = guess < certain ? certain : guess;
+  const double certified = certified_now(pair, node);
+  contact.distance = guess < certified ? certified : guess;
   return contact;
 }
 
@@ -122,7 +122,7 @@ void Report::replace(const PairState& pair, const Node& node, const LeafContact&
 
 void Report::mix_distance(const PairState& pair, const Node& node, double other,
                           double share) noexcept {
-  const double lower_m = certain_now(pair, node) * pair.unit_m;  // what was certain before mixing
+  const double lower_m = certified_now(pair, node) * pair.unit_m;  // as it was before mixing
   if (lower_m < mixed_lower_m_) mixed_lower_m_ = lower_m;
   Contact& c = contacts_[node.report];
   c.distance_m = share * c.distance_m + (1 - share) * other * pair.unit_m;

@@ -18,11 +18,11 @@ struct QueryResult;
 
 /// Keeps a contact in its node: as material points, with the share of it that is felt, and how much
 /// farther apart the original surfaces can be (the surface deviations of both pieces).
-void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
-          const LeafContact& contact, Node& node) noexcept;
+void keep_contact(const PairState& pair, const image::Piece& a, const image::Piece& b,
+                  const LeafContact& contact, Node& node) noexcept;
 
 /// Gives a node the contact kept in another one, in or above whose subtree it is.
-inline void hand_over(const Node& from, Node& to) noexcept {
+inline void copy_contact(const Node& from, Node& to) noexcept {
   to.contact = from.contact;
   to.witness_a = from.witness_a;
   to.witness_b = from.witness_b;

@@ -21,7 +21,7 @@ constexpr double kFrontCut = 0.5;
 constexpr double kCutFrom[] = {1, 0.75, 0.5, 0.25, 0};
 /// For cuts a budget of fewer units counts as this many. What is near about one contact has to fit
 /// into the front, measured in turns where a tick does not do for all of it: a smaller cut would
-/// split its way down to the contact anew in each tick, through the largest hulls, and not arrive.
+/// split its way down to the contact again in each tick, through the largest hulls, and not arrive.
 constexpr double kLeastAffordable = 32;
 /// The front's nodes lie anywhere in the pool: this many are on their way from memory.
 constexpr std::size_t kAhead = 8;
@@ -45,7 +45,7 @@ void restart(Work& work, PairState& pair) noexcept {
 void rise_if_apart(Work& work, PairState& pair) noexcept {
   Node& root = work.tree[pair.root];
   if (work.tree.in_front(pair.root) || work.out_of_budget()) return;
-  if (work.is_near(root) && !work.rests(root)) return;
+  if (work.is_near(root) && !work.proves_far(root)) return;
   work.tree.collapse(pair.root);
   root.contact = 0;
 }
@@ -60,7 +60,7 @@ void place(Work& work, PairState& pair) noexcept {
   } else {
     rise_if_apart(work, pair);
   }
-  pair.apart = certain_now(pair, root);
+  pair.apart = certified_now(pair, root);
 }
 
 /// Where the motion bound has run out the spheres may still do: they cost no query.
@@ -68,10 +68,10 @@ void renew(Work& work, Node& node) noexcept {
   const PairState& pair = work.pair_of(node);
   if (!work.is_near(node)) return;
   const double spheres = sphere_distance(pair, piece_a(pair, node), piece_b(pair, node));
-  if (spheres - kSphereRounding > certain_now(pair, node))
+  if (spheres - kSphereRounding > certified_now(pair, node))
     prove(pair, node, spheres - kSphereRounding);
   if (spheres < pair.delta + kSphereRounding) return;
-  set_rest(pair, node, spheres - kSphereRounding);
+  set_lower_bound(pair, node, spheres - kSphereRounding);
   node.contact = 0;
 }
 
@@ -91,13 +91,13 @@ double near_children(const Work& work, const Node& parent) noexcept {
 }
 
 /// To its parent, where that has none that is nearer.
-void hand_up(Work& work, const PairState& pair, const Node& node) noexcept {
+void pass_contact_up(Work& work, const PairState& pair, const Node& node) noexcept {
   if (node.contact == 0) return;
   Node& above = work.tree[node.parent];
   const bool better = above.contact == 0 || node.contact < above.contact ||
                       (node.contact == above.contact &&
                        remeasured(pair, node).distance < remeasured(pair, above).distance);
-  if (better) hand_over(node, above);
+  if (better) copy_contact(node, above);
 }
 
 /// Every ancestor gets the nearest contact below it, so that none is lost to a cut. What it kept
@@ -109,7 +109,7 @@ void carry_contacts_up(Work& work, const PairState& pair) noexcept {
     for (; !work.tree.in_front(at); at = work.tree[at].first_child) work.tree[at].contact = 0;
     for (;; at = work.tree[at].parent) {
       if (at == pair.root) return;
-      hand_up(work, pair, work.tree[at]);
+      pass_contact_up(work, pair, work.tree[at]);
       if (work.tree[at].next_sibling != kNone) break;
     }
     at = work.tree[at].next_sibling;
@@ -189,8 +189,9 @@ void wait_if_near(Work& work, std::uint32_t index) noexcept {
   if (!work.is_near(node)) return;
   const PairState& pair = work.pair_of(node);
   const bool ranked = work.only_culls(node);
-  const double certain = certain_now(pair, node);
-  work.wait({ranked ? rank(work, node, certain) : certain, certain * pair.unit_m, index, ranked});
+  const double certified = certified_now(pair, node);
+  work.wait(
+      {ranked ? rank(work, node, certified) : certified, certified * pair.unit_m, index, ranked});
 }
 
 double rank(const Work& work, const Node& node, double lower) noexcept {

@@ -32,10 +32,10 @@ struct alignas(64) Node {
   // body pair's odometers stood at travel_at and turn_at, and shrink by the motion since.
   double travel_at = 0;
   double turn_at = 0;
-  float rest = 0;     ///< while this is delta or more, the node need not be looked at: neither its
-                      ///< pieces nor what is below them give a contact
-  float certain = 0;  ///< lower bound of the distance of the two pieces' original descendants
-  float reach = 0;    ///< farthest point of piece a from the centre of body a: lever arm of turning
+  float lower_bound = 0;  ///< while this is delta or more, the node need not be looked at: neither
+                          ///< its pieces nor what is below them give a contact
+  float certified = 0;    ///< lower bound of the distance of the two pieces' original descendants
+  float reach = 0;  ///< farthest point of piece a from the centre of body a: lever arm of turning
   std::uint16_t pair = 0;    ///< body pair
   std::uint8_t contact = 0;  ///< 0: none is kept at the witnesses; else kFound, kDoubtful
   std::uint8_t flags = 0;
