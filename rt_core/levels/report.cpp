@@ -84,7 +84,19 @@ bool Report::add(const PairState& pair, Node& node, const LeafContact& contact) 
   note_upper(pair, node, contact);
   if (count_ == contacts_.size()) return false;
   node.report = count_++;
-  replace(pair, node, contact);
+  Contact& out = contacts_[node.report];
+  out.point_a_m = in_world(pair, contact.point_a);
+  out.point_b_m = in_world(pair, contact.point_b);
+  out.centre_m = centre_m(pair, node, contact);
+  out.normal = pair.rotation_a * contact.normal;
+  out.distance_m = contact.distance * pair.unit_m;
+  out.share = 1;
+  out.weight = 0;
+  out.pair = node.pair;
+  out.piece_a = node.piece_a;
+  out.level_a = piece_a(pair, node).level;
+  out.piece_b = node.piece_b;
+  out.level_b = piece_b(pair, node).level;
   return true;
 }
 
@@ -101,23 +113,6 @@ Vec3d Report::centre_m(const PairState& pair, const Node& node,
                                         pair.delta - contact.distance, middle, scratch_);
   }
   return in_world(pair, middle + centre.share * (centre.at - middle));
-}
-
-void Report::replace(const PairState& pair, const Node& node, const LeafContact& contact) noexcept {
-  note_upper(pair, node, contact);
-  Contact& out = contacts_[node.report];
-  out.point_a_m = in_world(pair, contact.point_a);
-  out.point_b_m = in_world(pair, contact.point_b);
-  out.centre_m = centre_m(pair, node, contact);
-  out.normal = pair.rotation_a * contact.normal;
-  out.distance_m = contact.distance * pair.unit_m;
-  out.share = 1;
-  out.weight = 0;
-  out.pair = node.pair;
-  out.piece_a = node.piece_a;
-  out.level_a = piece_a(pair, node).level;
-  out.piece_b = node.piece_b;
-  out.level_b = piece_b(pair, node).level;
 }
 
 void Report::mix_distance(const PairState& pair, const Node& node, double other,

@@ -48,9 +48,6 @@ class Report {
   /// Added so far, those that a mix has dropped too.
   [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
 
-  /// Puts another one in the place of what was added for a node.
-  void replace(const PairState& pair, const Node& node, const LeafContact& contact) noexcept;
-
   /// Where the force of a node's contact acts, in the world. O(1) (convex/pressure.hpp)
   [[nodiscard]] Vec3d centre_m(const PairState& pair, const Node& node,
                                const LeafContact& contact) const noexcept;

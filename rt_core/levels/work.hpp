@@ -75,8 +75,8 @@ struct Work {
   /// Notes an iteration cap met by a contact of original pieces, for the certificate.
   void note_cap(const PairState& pair, const LeafContact& contact) noexcept;
 
-  /// Reports the contact of a node if it is nearer than delta, in place of one reported before; or
-  /// that there was no room for it.
+  /// Reports the contact of a node, once a tick, if it is nearer than delta; or that there was no
+  /// room for it.
   void add_contact(Node& node, const LeafContact& contact) noexcept;
 
   QueryMemory& memory;
