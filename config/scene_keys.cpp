@@ -13,7 +13,7 @@ constexpr double kMost = 1e18;
 
 constexpr std::string_view kEngines[] = {"levels", "regions"};
 constexpr std::string_view kBounds[] = {"tight", "paper"};
-constexpr std::string_view kOrders[] = {"deviation", "nearest", "ratio", "force"};
+constexpr std::string_view kOrders[] = {"deviation", "force"};
 constexpr std::string_view kCouplings[] = {"direct", "virtual"};
 constexpr std::string_view kRoles[] = {"tool", "moved", "fixed"};
 
@@ -40,20 +40,6 @@ constexpr Key<Scene> kEngineKeys[] = {
      "which bodies touch"},
     {"interpolate", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.interpolate; }},
      "blend between levels of detail, so that the force has no steps"},
-    {"contact_dive", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.contact_dive; }},
-     "`levels`: contacts of simplified pieces have the least distance of the original surfaces "
-     "below them, so that the force hardly depends on the level; off: their own, as in the paper"},
-    {"front_tracking", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.front_tracking; }},
-     "`levels`: a tick starts from the last tick's front; off: from the roots"},
-    {"motion_bounds", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.motion_bounds; }},
-     "`levels`: pairs of pieces are skipped while the motion since their last query cannot have "
-     "brought them within `delta_m`"},
-    {"root_short_cut", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.root_short_cut; }},
-     "`levels`: bodies whose hulls are `delta_m` or more apart cost one query"},
-    {"stop_on_surface", "",
-     Flag<Scene>{[](Scene& s) -> bool& { return s.settings.stop_on_surface; }},
-     "`levels`: one contact, and no further refinement, where the closest features of two pieces "
-     "lie on the original surfaces; nothing with `exact` or the paper's bounds"},
     {"bounds", "",
      Choice<Scene>{kBounds,
                    [](Scene& s, std::size_t i) { s.settings.bounds = static_cast<Bounds>(i); },
@@ -65,8 +51,7 @@ constexpr Key<Scene> kEngineKeys[] = {
                    [](Scene& s, std::size_t i) { s.settings.order = static_cast<Order>(i); },
                    [](const Scene& s) { return static_cast<std::size_t>(s.settings.order); }},
      "what is refined first under a budget: the largest weighted surface `deviation` (the paper's "
-     "order), the `nearest`, the largest `ratio` of the two, or what can still change the `force` "
-     "most"},
+     "order), or what can still change the `force` most"},
     {"budget_us", "µs",
      OptionalReal<Scene>{[](Scene& s) -> std::optional<double>& { return s.budget_us; }, 0, 1e9},
      "time after which one tick stops refining; absent: unlimited in replay, chosen from the rate "

@@ -32,11 +32,6 @@ bool normalise(const Pose& in, Pose& out) noexcept {
 levels::Rules rules_of(const Settings& settings) noexcept {
   return {.exact = settings.exact,
           .interpolate = settings.interpolate,
-          .contact_dive = settings.contact_dive,
-          .front_tracking = settings.front_tracking,
-          .motion_bounds = settings.motion_bounds,
-          .root_short_cut = settings.root_short_cut,
-          .stop_on_surface = settings.stop_on_surface,
           .bounds = settings.bounds,
           .order = settings.order,
           .s0 = settings.s0,

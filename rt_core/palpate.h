@@ -51,7 +51,7 @@ typedef struct palpate_scene {
 
 enum { PALPATE_LEVELS = 0, PALPATE_REGIONS = 1 };
 enum { PALPATE_BOUNDS_TIGHT = 0, PALPATE_BOUNDS_PAPER = 1 };
-enum { PALPATE_BY_DEVIATION = 0, PALPATE_NEAREST = 1, PALPATE_BY_RATIO = 2, PALPATE_BY_FORCE = 3 };
+enum { PALPATE_BY_DEVIATION = 0, PALPATE_BY_FORCE = 1 };
 
 /* Start from palpate_default_settings(): fields are only ever added. */
 typedef struct palpate_settings {
@@ -60,11 +60,6 @@ typedef struct palpate_settings {
   uint32_t interpolate;
   uint32_t bounds;
   uint32_t order;
-  uint32_t front_tracking; /* 0 or 1, and the next three */
-  uint32_t motion_bounds;
-  uint32_t root_short_cut;
-  uint32_t stop_on_surface;
-  uint32_t contact_dive; /* 0 or 1 */
   double delta_m;
   double s0;
   double kappa; /* infinity: no such rule */

@@ -64,9 +64,7 @@ Limits limits_of(const palpate_limits& from) noexcept {
 /// False where an enumeration is out of range.
 bool settings_of(const palpate_settings& from, Settings& out) noexcept {
   if (from.engine > PALPATE_REGIONS || from.exact > 1 || from.interpolate > 1 ||
-      from.bounds > PALPATE_BOUNDS_PAPER || from.order > PALPATE_BY_FORCE ||
-      from.front_tracking > 1 || from.motion_bounds > 1 || from.root_short_cut > 1 ||
-      from.stop_on_surface > 1 || from.contact_dive > 1) {
+      from.bounds > PALPATE_BOUNDS_PAPER || from.order > PALPATE_BY_FORCE) {
     return false;
   }
   out.engine = static_cast<EngineKind>(from.engine);
@@ -74,11 +72,6 @@ bool settings_of(const palpate_settings& from, Settings& out) noexcept {
   out.interpolate = from.interpolate != 0;
   out.bounds = static_cast<Bounds>(from.bounds);
   out.order = static_cast<Order>(from.order);
-  out.front_tracking = from.front_tracking != 0;
-  out.motion_bounds = from.motion_bounds != 0;
-  out.root_short_cut = from.root_short_cut != 0;
-  out.stop_on_surface = from.stop_on_surface != 0;
-  out.contact_dive = from.contact_dive != 0;
   out.delta_m = from.delta_m;
   out.s0 = from.s0;
   out.kappa = from.kappa;
@@ -203,11 +196,6 @@ void palpate_default_settings(palpate_settings* out) {
           s.interpolate ? 1u : 0u,
           static_cast<std::uint32_t>(s.bounds),
           static_cast<std::uint32_t>(s.order),
-          s.front_tracking ? 1u : 0u,
-          s.motion_bounds ? 1u : 0u,
-          s.root_short_cut ? 1u : 0u,
-          s.stop_on_surface ? 1u : 0u,
-          s.contact_dive ? 1u : 0u,
           s.delta_m,
           s.s0,
           s.kappa,

@@ -51,8 +51,6 @@ enum class Bounds : std::uint8_t {
 /// What is refined first while the budget lasts (levels engine).
 enum class Order : std::uint8_t {
   deviation,  ///< the largest weighted surface deviation s* (the paper's time-critical mode)
-  nearest,    ///< the least distance
-  ratio,      ///< the largest s* over distance
   force,      ///< what can still change the force most: the widest interval from what is proved of
               ///< a distance up to the contact known there, or to delta
 };
@@ -72,23 +70,6 @@ struct Settings {
   /// Without a budget it changes nothing.
   Order order = Order::force;
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
-  /// Give contacts of simplified pieces the least distance of the original surfaces below them,
-  /// instead of their own (the paper's): the force then hardly depends on the level. Costs about as
-  /// many queries as refinement (levels/dive.hpp); where the budget ends refinement, contacts that
-  /// were not reached are found so too. An exact query does the latter in any case.
-  bool contact_dive = false;
-
-  // Fewer pairs (levels engine). Each can be switched alone, so that its effect can be measured.
-  // The first three never change which pairs are near; the last one leaves contacts out.
-  bool front_tracking = true;  ///< start from the last tick's front; off: from the roots each tick
-  /// Skip a pair while its last proved distance, less the motion since, is delta or more; off:
-  /// every pair of the front is measured in every tick.
-  bool motion_bounds = true;
-  bool root_short_cut = true;  ///< where the root hulls are delta or more apart, measure no others
-  /// Stop at a pair whose closest features already lie on both original surfaces: one contact there
-  /// instead of all below it. The least distance stays as certified; no effect where `exact` is set
-  /// or bounds are the paper's.
-  bool stop_on_surface = false;
 
   /// Regions engine: refinement may end once the certified error of the force is no more; 0: exact.
   /// Whether two bodies touch is decided all the same, as far as a budget goes.

@@ -52,8 +52,6 @@ struct Layout {
   std::span<levels::Node> nodes;
   std::span<std::uint32_t> front, blending, stopped;
   std::span<levels::Waiting> waiting;
-  std::span<levels::OpenPair> open;
-  std::span<levels::Touch> touches;
   std::span<convex::PenetrationScratch> scratch;
   std::span<convex::PressureScratch> pressure;
   // Regions engine.
@@ -105,14 +103,12 @@ std::size_t contacts_for(const Scene& scene, const Limits& limits, EngineKind ki
   return smaller(limits.contacts, most);
 }
 
-void lay_out_levels(Arena& arena, const Scene& scene, const Limits& limits, Layout& out) noexcept {
+void lay_out_levels(Arena& arena, const Limits& limits, Layout& out) noexcept {
   out.nodes = arena.array<levels::Node>(limits.nodes);
   out.front = arena.array<std::uint32_t>(limits.nodes);
   out.blending = arena.array<std::uint32_t>(limits.nodes);
   out.waiting = arena.array<levels::Waiting>(limits.nodes);
   out.stopped = arena.array<std::uint32_t>(limits.nodes);
-  out.open = arena.array<levels::OpenPair>(levels::kMaxOpenPairs);
-  out.touches = arena.array<levels::Touch>(levels::kTouches * scene.pairs.size());
   out.scratch = arena.array<convex::PenetrationScratch>(1);
   out.pressure = arena.array<convex::PressureScratch>(1);
 }
@@ -155,7 +151,7 @@ Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKin
       smaller(force::Spot::kCorners * limits.contacts, force::Places::room_for(contacts)));
   out.places = arena.array<force::Place>(limits.clusters);
   if (kind == EngineKind::levels) {
-    lay_out_levels(arena, scene, limits, out);
+    lay_out_levels(arena, limits, out);
   } else {
     lay_out_regions(arena, scene, out);
   }
@@ -185,8 +181,6 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.levels.tree.attach(layout.nodes, layout.front, layout.blending);
   e.levels.waiting = layout.waiting;
   e.levels.stopped = layout.stopped;
-  e.levels.open = layout.open;
-  e.levels.touches = layout.touches;
   e.levels.scratch = layout.scratch.data();
   e.levels.pressure = layout.pressure.data();
   e.regions.kernels = &regions::best_kernels();

@@ -54,8 +54,6 @@ def label(row):
         name += f", s0 {100 * float(row['s0']):g} %"
     if row["bounds"] == "paper":
         name += ", paper's bounds"
-    if row["contact_dive"] == "true":
-        name += ", dives"
     if row["budget_us"]:
         name += f", {float(row['budget_us']):g} us"
     if row["exact"] == "true" and float(row["truncated"]) > 0:
@@ -104,28 +102,27 @@ def span(values, form):
     return low if low == high else f"{low} to {high}"
 
 
-def simplified(table, bounds, dives):
+def simplified(table, bounds):
     """Settings of simplification alone, s0 up to 5 %."""
     return [r for r in table if r["engine"] == "levels" and r["exact"] != "true" and r["bounds"] == bounds
-            and r["contact_dive"] == dives and not r["budget_us"] and not is_kappa(r)]
+            and not r["budget_us"] and not is_kappa(r)]
 
 
 def summary(folder):
     """A line a sweep: what s0 from 0.5 to 5 % buys and loses, as in the paper and with what is ours, beside regions."""
     out = head("scene", "delta", "ticks", "paper's exact us", "as in the paper: times faster", "front times smaller", "force error %",
-               "tight bounds: times faster", "and dives: times faster", "force error %", "noticeable %", "regions exact us", "times faster")
+               "tight bounds: times faster", "regions exact us", "times faster")
     reached, fastest = [], (0, "")
     for title, delta, table in sweeps(folder):
         paper = exact_of(table, "paper")
         regions = next(r for r in table if r["engine"] == "regions" and r["exact"] == "true")
-        as_in_paper, ours, dives = simplified(table, "paper", "false"), simplified(table, "tight", "false"), simplified(table, "tight", "true")
+        as_in_paper, ours = simplified(table, "paper"), simplified(table, "tight")
         faster = lambda some: span([number(r, "speedup_median") for r in some], ".2g")
         out.append(line(title, delta, regions["ticks"], show(us(paper, "median_ns"), ".0f") if paper else "not run",
                         faster(as_in_paper), span([number(r, "front_ratio") for r in as_in_paper], ".2g"),
-                        span([percent(r, "force_nrmse") for r in as_in_paper], ".0f"), faster(ours), faster(dives),
-                        span([percent(r, "force_nrmse") for r in dives], ".1f"), span([percent(r, "noticeable") for r in dives], ".0f"),
+                        span([percent(r, "force_nrmse") for r in as_in_paper], ".0f"), faster(ours),
                         show(us(regions, "median_ns"), ".0f"), show(number(regions, "speedup_median"), ".2g")))
-        for r in as_in_paper + ours + dives:
+        for r in as_in_paper + ours:
             gain = number(r, "speedup_median") or 0
             where = f"{title} at delta {delta}, {label(r)} ({show(gain, '.2g')} times, force error {percent(r, 'force_nrmse'):.0f} %)"
             fastest = max(fastest, (gain, where))

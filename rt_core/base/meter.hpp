@@ -74,21 +74,6 @@ class Meter {
   void charge(std::uint64_t units) noexcept { used_ += units; }
   [[nodiscard]] std::uint64_t used() const noexcept { return used_; }
 
-  /// Until release(), one part in `parts` of what is left is not to be had. Unlimited units stay
-  /// so.
-  void hold_back(std::uint64_t parts) noexcept {
-    if (budget_.units != kUnlimited && used_ < budget_.units) {
-      stop_units_ = budget_.units - (budget_.units - used_) / parts;
-    }
-    if (budget_.clock_ns == nullptr) return;
-    const std::uint64_t now = now_ns();
-    if (now < end_ns_) stop_ns_ = end_ns_ - (end_ns_ - now) / parts;
-  }
-  void release() noexcept {
-    stop_units_ = budget_.units;
-    stop_ns_ = end_ns_;
-  }
-
   /// So many units are left for the tail, at most half of all; unlimited ones stay so.
   void set_aside(std::uint64_t units) noexcept {
     if (budget_.units == kUnlimited) return;
@@ -104,13 +89,14 @@ class Meter {
     const bool units_do = of_units || used_ < budget_.units;
     return units_do && (of_time || !limited_in_time() || now_ns() < end_ns_);
   }
-  /// It is to be had from here on, and what was held back or set aside as well; then it is gone.
+  /// It is to be had from here on, and what was set aside as well; then it is gone.
   void draw_on_reserve() noexcept {
     budget_.units = sum_of(budget_.units, budget_.reserve_units);
     budget_.deadline_ns = sum_of(budget_.deadline_ns, budget_.reserve_ns);
     budget_.reserve_units = budget_.reserve_ns = 0;
     if (budget_.clock_ns != nullptr) leave_for_tail(contacts_);
-    release();
+    stop_units_ = budget_.units;
+    stop_ns_ = end_ns_;
   }
 
   /// Units left, as far as a counter of 32 bits tells.
@@ -199,7 +185,7 @@ class Meter {
   std::uint64_t contacts_ = 0;  ///< expected
   std::uint64_t used_ = 0;
   std::uint64_t start_ns_ = 0;
-  std::uint64_t stop_units_ = 0;  ///< where the budget ends, or what is held back begins
+  std::uint64_t stop_units_ = 0;  ///< where the budget ends, or what is set aside begins
   std::uint64_t stop_ns_ = 0;     ///< likewise
   std::uint64_t end_ns_ = 0;
   std::uint64_t tail_start_ns_ = 0;

@@ -43,9 +43,7 @@ struct PairState {
   bool fresh = true;    ///< nothing is proved yet at any pose
   /// Lower bound of the distance of the two bodies, proved in this tick (levels engine).
   double apart = -std::numeric_limits<double>::infinity();
-  double nearest = 0;     ///< least distance of the contacts so far, or delta (levels engine)
-  bool searches = false;  ///< looks for a first contact (levels engine: start.hpp)
-  bool recalled = false;  ///< did not search, for what it remembered (likewise)
+  double nearest = 0;  ///< least distance of the contacts so far, or delta (levels engine)
 
   // Odometers: how far a has moved relative to b, in all ticks. A point of a at distance x from its
   // centre has moved at most travel + turn * x since both were zero.

@@ -11,6 +11,9 @@ using image::Piece;
 using image::PieceFlag;
 using image::Triangle;
 
+/// A point this near to a triangle of a patch lies on it. Baked vertices are rounded to 6e-8 and
+/// hulls are checked against the mesh to 1e-7.
+constexpr double kOnSurface = 1e-6;
 /// Of delta: patches that overlap by less have only just met.
 constexpr double kJustMet = 0.25;
 /// Squareness from which on they may have.
@@ -42,7 +45,7 @@ bool on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) noexcept {
 /// How squarely a patch may be met along a direction that leads out of it: 1 and more within its
 /// cone of normals, less by as much as the cosine falls beyond. `normal` is the piece's, in the
 /// coordinates of `outward`.
-double squareness(const Piece& piece, Vec3d normal, Vec3d outward) noexcept {
+double normal_alignment(const Piece& piece, Vec3d normal, Vec3d outward) noexcept {
   const double length = norm(normal);
   if (!(length > 0)) return 1;
   return 1 + dot(outward, normal) / length - static_cast<double>(piece.patch_cosine);
@@ -65,16 +68,17 @@ bool on_patch(const ImageView& image, const Piece& piece, Vec3d point) noexcept 
   return false;
 }
 
-double squareness(const PairState& pair, const Piece& a, const Piece& b, Vec3d direction) noexcept {
-  const double of_a = squareness(a, patch_normal(a), -direction);
-  const double of_b = squareness(b, pair.b_in_a.rotation * patch_normal(b), direction);
+double normal_alignment(const PairState& pair, const Piece& a, const Piece& b,
+                        Vec3d direction) noexcept {
+  const double of_a = normal_alignment(a, patch_normal(a), -direction);
+  const double of_b = normal_alignment(b, pair.b_in_a.rotation * patch_normal(b), direction);
   return of_a < of_b ? of_a : of_b;
 }
 
 double just_met(const PairState& pair, const Piece& a, const Piece& b, const Way& way) noexcept {
   const double deep = way.depth / (kJustMet * pair.delta);
   if (!(deep < 1)) return 0;
-  const double square = squareness(pair, a, b, way.normal);
+  const double square = normal_alignment(pair, a, b, way.normal);
   if (!(square > 0)) return 0;
   const Vec3d point_b = way.point_a + way.depth * way.normal;
   if (!on_patch(*pair.image_a, a, (1.0 / pair.scale_a) * way.point_a) ||

@@ -6,10 +6,6 @@
 
 namespace palpate::levels {
 
-/// A point this near to a triangle of a patch lies on it. Baked vertices are rounded to 6e-8 and
-/// hulls are checked against the mesh to 1e-7.
-inline constexpr double kOnSurface = 1e-6;
-
 /// A way to part the hulls of a and b, in the coordinates of a: moving a by depth * normal takes
 /// point_a out of b.
 struct Way {
@@ -28,8 +24,8 @@ inline Vec3d patch_normal(const image::Piece& piece) noexcept { return vec3d(pie
 /// How squarely two patches meet along a direction from b to a: 1 and more where that lies in the
 /// cone of normals of both, less by as much as the cosine falls beyond the cone of the less square.
 /// A patch that does not tell which way it faces is met squarely.
-[[nodiscard]] double squareness(const PairState& pair, const image::Piece& a, const image::Piece& b,
-                                Vec3d direction) noexcept;
+[[nodiscard]] double normal_alignment(const PairState& pair, const image::Piece& a,
+                                      const image::Piece& b, Vec3d direction) noexcept;
 
 /// Have patches only just met, so that the way the hulls part soonest is the one they came? 1 where
 /// they begin to overlap, 0 from a quarter of delta on. Less, and 0 at last, where they meet less

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/interpolate.hpp"
 
-#include "rt_core/levels/dive.hpp"
-
 namespace palpate::levels {
 namespace {
 
@@ -21,7 +19,7 @@ bool children_settled(const Work& work, const Node& parent) noexcept {
 class Group {
  public:
   Group(Work& work, std::uint32_t parent) noexcept
-      : work_(work), index_(parent), parent_(work.tree[parent]), pair_(work.pair_of(parent_)) {}
+      : work_(work), parent_(work.tree[parent]), pair_(work.pair_of(parent_)) {}
 
   /// Measures the parent and mixes. True where the parent takes its children's place.
   bool settle() noexcept {
@@ -55,7 +53,6 @@ class Group {
   /// Where there is none, its distance counts as delta: no force.
   LeafContact contact_of_parent(const Piece& a, const Piece& b,
                                 const convex::Distance& d) noexcept {
-    if (work_.dives(parent_)) return contact_of_children();
     parent_.contact = 0;
     if (d.lower_bound >= pair_.delta) return {};
     const LeafContact contact = leaf_contact(pair_, a, b, d, parent_.own, pair_.delta,
@@ -63,15 +60,8 @@ class Group {
     work_.probe.charge_parts(contact.queries);
     if (contact.hidden_a || contact.hidden_b) return contact;
     if (!contact.found || contact.interrupted || contact.distance >= pair_.delta) return {};
-    keep(pair_, a, b, contact, parent_);
+    keep_contact(pair_, a, b, contact, parent_);
     return contact;
-  }
-
-  LeafContact contact_of_children() noexcept {
-    gather(work_, index_);
-    if (parent_.contact == 0) return {};
-    const LeafContact contact = remeasured(pair_, parent_);
-    return contact.distance < pair_.delta ? contact : LeafContact{};
   }
 
   void mix(const LeafContact& of_parent, double share) noexcept {
@@ -98,7 +88,6 @@ class Group {
   }
 
   Work& work_;
-  std::uint32_t index_;
   Node& parent_;
   const PairState& pair_;
 };

@@ -27,8 +27,7 @@ inline constexpr double kOwnContactFrom = 2;
 /// Only a parent that is within delta and yet has no contact, because its witness lies inside the
 /// solid, leaves those of its children alone. One query for each near parent of settled children
 /// that has a stopped one, or e_p < kOwnContactFrom, while the budget lasts; nothing else of the
-/// front is looked at. The contact of a parent that dives is the nearest of its children's: nothing
-/// below is nearer.
+/// front is looked at.
 void interpolate(Work& work) noexcept;
 
 /// Whether a node may ever have a share of its children's contacts. Free pieces have no metric, and

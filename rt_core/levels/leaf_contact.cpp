@@ -164,7 +164,7 @@ LeafContact nearest_parts(const PairState& pair, const Piece& a, const Piece& b,
 /// go on being parted the way they met.
 Vec3d direction_of(const PairState& pair, const Piece& a, const Piece& b, const Way& way) noexcept {
   const Vec3d shortest = way.normal;
-  const double square = smooth_step(squareness(pair, a, b, shortest));
+  const double square = smooth_step(normal_alignment(pair, a, b, shortest));
   const double as_met = square < 1 ? just_met(pair, a, b, way) : 0;
   const double share = square > as_met ? square : as_met;
   const Vec3d facing = pair.b_in_a.rotation * patch_normal(b) - patch_normal(a);
@@ -193,7 +193,7 @@ void fade_behind(const PairState& pair, const Piece& a, const Piece& b, double r
                  LeafContact& contact) noexcept {
   if (!(contact.distance < reach)) return;
   const bool simplified = is_simplified(a) || is_simplified(b);
-  const double square = squareness(pair, a, b, contact.normal);
+  const double square = normal_alignment(pair, a, b, contact.normal);
   contact.share = smooth_step(simplified ? square : 1 + kBehind * square);
   if (contact.share < 1) contact.distance = faded(contact.distance, contact.share, reach);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/levels_engine.hpp"
 
-#include "rt_core/levels/dive.hpp"
 #include "rt_core/levels/interpolate.hpp"
 #include "rt_core/levels/refine.hpp"
 #include "rt_core/levels/start.hpp"
@@ -16,28 +15,8 @@ bool is_approximate(const Work& work, const Node& node) noexcept {
   return is_simplified(piece_a(pair, node)) || is_simplified(piece_b(pair, node));
 }
 
-/// Refinement and dives share what is left of the budget, round by round; in the last round
-/// refinement may have all of it. Exact queries do not dive.
-constexpr std::uint32_t kRounds = 4;
-constexpr std::uint64_t kDivesPart = 2;
-/// No share of fewer queries pays for a search: refinement gets them all.
-constexpr std::uint32_t kTooFewToShare = 8;
-
-void hold_back(Work& work) noexcept {
-  if (!work.rules.contact_dive || work.rules.exact || work.meter.queries_left() <= kTooFewToShare)
-    return;
-  work.meter.hold_back(kDivesPart);
-}
-
-void refine_and_dive(Work& work) noexcept {
-  for (std::uint32_t round = 0; round < kRounds; ++round) {
-    if (round + 1 < kRounds) hold_back(work);
-    refine(work);
-    work.meter.release();
-    dive(work);
-    if (work.waiting.empty() || work.out_of_budget()) break;
-  }
-  report_undived(work);
+void refine_within_budget(Work& work) noexcept {
+  refine(work);
   if (work.waiting.empty()) return;
   const bool by_units = work.meter.out_of_units();
   work.result.truncated_by_units |= by_units;
@@ -52,7 +31,7 @@ void settle(Work& work) noexcept {
   for (const std::uint32_t index : work.stopped.all()) {
     const Node& node = work.tree[index];
     if (work.tree.in_front(index) && is_approximate(work, node)) {
-      work.leave_unresolved(work.certain_m(node), node);
+      work.leave_unresolved(work.certified_m(node), node);
     }
   }
 }
@@ -63,14 +42,12 @@ void finish(Work& work) noexcept {
   work.result.iteration_cap_met |= work.probe.iteration_cap_met();
 }
 
-void run(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally, Discipline discipline,
+void run(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally, Schedule schedule,
          QueryResult& out) noexcept {
-  Work work(memory, rules, meter, tally, discipline);
-  hold_back(work);  // where a tick starts depends on what refinement may spend
+  Work work(memory, rules, meter, tally, schedule);
   start(work);
-  meter.release();
   tally.lap(Stage::start, meter);
-  refine_and_dive(work);
+  refine_within_budget(work);
   tally.lap(Stage::refine, meter);
   if (!work.result.truncated_by_time && !work.result.truncated_by_units) {
     if (rules.interpolate && !rules.exact) interpolate(work);
@@ -93,13 +70,13 @@ QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& 
   const bool endless = rules.exact && !meter.limited();
   QueryResult found;
   if (endless && !memory.short_of_room) {
-    run(memory, rules, meter, tally, Discipline::whole, found);
+    run(memory, rules, meter, tally, Schedule::exhaustive, found);
     if (!found.truncated_by_memory) return found;
     // What is nearest gets the memory, from the roots on.
     for (PairState& pair : memory.pairs) pair.fresh = true;
   }
   const std::uint64_t spent = found.queries;
-  run(memory, rules, meter, tally, Discipline::by_worth, found);
+  run(memory, rules, meter, tally, Schedule::by_priority, found);
   found.queries += spent;
   memory.short_of_room = endless && found.truncated_by_memory;
   return found;

@@ -19,36 +19,12 @@
 
 namespace palpate::levels {
 
-/// A pair of pieces that a dive has open (dive.hpp).
-struct OpenPair {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
-  double lower = 0;  ///< nothing below it is nearer, in units
-};
-/// Pairs that a dive has open, at most.
-inline constexpr std::uint32_t kMaxOpenPairs = 64;
-
-/// A pair of pieces that has touched (recall.hpp), and where.
-struct Touch {
-  std::uint32_t a = kNone;
-  std::uint32_t b = kNone;
-  Vec3f point_a{};  ///< in the coordinates of a
-  Vec3f point_b{};  ///< in those of b
-  Vec3f normal{};   ///< where its queries begin; in the coordinates of a
-  convex::Cache own;
-};
-/// Remembered of a pair of bodies.
-inline constexpr std::uint32_t kTouchBits = 8;
-inline constexpr std::uint32_t kTouches = 1u << kTouchBits;
-
 /// Memory of the query, borrowed from the engine.
 struct QueryMemory {
   std::span<PairState> pairs;
   TestTree tree;
   std::span<Waiting> waiting;        ///< [nodes]
   std::span<std::uint32_t> stopped;  ///< [nodes]; those that refinement stopped at in this tick
-  std::span<OpenPair> open;          ///< [kMaxOpenPairs]
-  std::span<Touch> touches;          ///< [kTouches for each pair]
   std::span<Contact> contacts;       ///< [limits.contacts]
   convex::PenetrationScratch* scratch = nullptr;
   convex::PressureScratch* pressure = nullptr;
@@ -77,16 +53,15 @@ struct QueryResult {
 /// Q(A, B, delta) for all pairs, whose poses and deltas are set.
 ///
 /// Stage by stage: start (start.hpp) from last tick's front, the near nodes of it on a queue;
-/// refine (refine.hpp) and dive for the contacts of the original surfaces (dive.hpp), which share
-/// the budget; with time left, interpolate contacts between levels
+/// refine (refine.hpp) while the budget lasts; with time left, interpolate contacts between levels
 /// (interpolate.hpp) and keep up the tree and the certificate (upkeep.hpp). What still waits when
 /// the budget ends keeps its lower bound, and the last contact that it or an ancestor gave,
 /// re-measured at its material points: the cut is complete at every moment, and a truncated answer
 /// loses detail only. An exact query that no budget can end is worked off in the cheapest order
-/// (Discipline::whole); where its nodes or contacts turn out not to fit, it begins again from the
-/// roots, by worth, so that what is nearest gets the memory, and later ticks go on from there until
-/// one fits. Departure: nearest first within what has to be measured anyway, so that forces are
-/// renewed before detail is added. Cost: the budget, plus one leaf contact, plus O(front).
+/// (Schedule::exhaustive); where its nodes or contacts turn out not to fit, it begins again from
+/// the roots, by worth, so that what is nearest gets the memory, and later ticks go on from there
+/// until one fits. Departure: nearest first within what has to be measured anyway, so that forces
+/// are renewed before detail is added. Cost: the budget, plus one leaf contact, plus O(front).
 QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally) noexcept;
 
 }  // namespace palpate::levels

@@ -9,11 +9,11 @@ using image::Piece;
 /// Rounding of the odometers and of float bounds, in units.
 constexpr double kMotionSlack = 1e-9;
 /// A query may stop once the pair is this many ticks of the present motion farther than delta: it
-/// then rests for as long.
-constexpr double kRestTicks = 6;
-/// With Discipline::whole also at this share of delta: in fast motion a longer rest saves queries,
-/// but costs more iterations than these would.
-constexpr double kRestShare = 0.2;
+/// need then not be measured for as long.
+constexpr double kFarTicks = 6;
+/// With Schedule::exhaustive also at this share of delta: in fast motion a longer pause saves
+/// queries, but costs more iterations than these would.
+constexpr double kFarShare = 0.2;
 
 /// Rounded towards minus infinity far enough for float.
 float float_below(double v) noexcept { return static_cast<float>(v - 1e-7 * (v < 0 ? -v : v)); }
@@ -26,8 +26,8 @@ double motion(const PairState& pair, const Node& node) noexcept {
 /// Both bounds as of now.
 void renew(const PairState& pair, Node& node) noexcept {
   if (node.travel_at == pair.travel && node.turn_at == pair.turn) return;
-  node.rest = float_below(rest_now(pair, node));
-  node.certain = float_below(certain_now(pair, node));
+  node.lower_bound = float_below(lower_bound_now(pair, node));
+  node.certified = float_below(certified_now(pair, node));
   node.travel_at = pair.travel;
   node.turn_at = pair.turn;
 }
@@ -49,23 +49,23 @@ convex::Hull culling_hull_of(const ImageView& image, const Piece& piece, double 
 
 }  // namespace
 
-double rest_now(const PairState& pair, const Node& node) noexcept {
-  return static_cast<double>(node.rest) - motion(pair, node) - kMotionSlack;
+double lower_bound_now(const PairState& pair, const Node& node) noexcept {
+  return static_cast<double>(node.lower_bound) - motion(pair, node) - kMotionSlack;
 }
 
-double certain_now(const PairState& pair, const Node& node) noexcept {
-  const double own = static_cast<double>(node.certain) - motion(pair, node) - kMotionSlack;
+double certified_now(const PairState& pair, const Node& node) noexcept {
+  const double own = static_cast<double>(node.certified) - motion(pair, node) - kMotionSlack;
   return own > pair.apart ? own : pair.apart;
 }
 
-void prove(const PairState& pair, Node& node, double certain) noexcept {
+void prove(const PairState& pair, Node& node, double certified) noexcept {
   renew(pair, node);
-  if (certain > static_cast<double>(node.certain)) node.certain = float_below(certain);
+  if (certified > static_cast<double>(node.certified)) node.certified = float_below(certified);
 }
 
-void set_rest(const PairState& pair, Node& node, double rest) noexcept {
+void set_lower_bound(const PairState& pair, Node& node, double lower_bound) noexcept {
   renew(pair, node);
-  node.rest = float_below(rest);
+  node.lower_bound = float_below(lower_bound);
 }
 
 void begin(const PairState& pair, Node& node, double inherited) noexcept {
@@ -74,8 +74,8 @@ void begin(const PairState& pair, Node& node, double inherited) noexcept {
       norm(centre_of(a, pair.scale_a)) + pair.scale_a * static_cast<double>(a.radius);
   node.reach = static_cast<float>(reach * (1 + 1e-6));
   const double spheres = sphere_distance(pair, a, piece_b(pair, node)) - kMotionSlack;
-  node.rest = float_below(spheres);
-  node.certain = float_below(spheres > inherited ? spheres : inherited);
+  node.lower_bound = float_below(spheres);
+  node.certified = float_below(spheres > inherited ? spheres : inherited);
   node.travel_at = pair.travel;
   node.turn_at = pair.turn;
 }
@@ -88,12 +88,11 @@ void Probe::note(const convex::Distance& d) noexcept {
   });
 }
 
-double Probe::rest_margin(const PairState& pair, const Node& node) const noexcept {
-  if (!rules_.motion_bounds) return 0;
+double Probe::far_margin(const PairState& pair, const Node& node) const noexcept {
   const double margin =
-      kRestTicks * (pair.last_travel + pair.last_turn * static_cast<double>(node.reach));
-  const double most = kRestShare * pair.delta;
-  return discipline_ == Discipline::whole && margin > most ? most : margin;
+      kFarTicks * (pair.last_travel + pair.last_turn * static_cast<double>(node.reach));
+  const double most = kFarShare * pair.delta;
+  return schedule_ == Schedule::exhaustive && margin > most ? most : margin;
 }
 
 convex::Distance Probe::cull(const PairState& pair, Node& node, Ask ask) noexcept {
@@ -107,8 +106,8 @@ convex::Distance Probe::cull(const PairState& pair, Node& node, Ask ask) noexcep
   const convex::Distance d = convex::distance(
       culling_hull_of(*pair.image_a, a, pair.scale_a),
       culling_hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a,
-      {.above = reach + rest_margin(pair, node),
-       .below = ask == Ask::nearness && discipline_ == Discipline::whole ? reach : 0},
+      {.above = reach + far_margin(pair, node),
+       .below = ask == Ask::nearness && schedule_ == Schedule::exhaustive ? reach : 0},
       node.culling, vec_cast<double>(node.normal));
   note(d);
   tally_.count([](auto& counters) { ++counters.culling_queries; });
@@ -125,7 +124,7 @@ convex::Distance Probe::own(const PairState& pair, Node& node) noexcept {
                    pair.scale_b * static_cast<double>(b.hausdorff);
   const convex::Distance d = convex::distance(
       hull_of(*pair.image_a, a, pair.scale_a), hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a,
-      {.above = pair.delta + h + rest_margin(pair, node)}, node.own, vec_cast<double>(node.normal));
+      {.above = pair.delta + h + far_margin(pair, node)}, node.own, vec_cast<double>(node.normal));
   note(d);
   tally_.count([](auto& counters) { ++counters.own_queries; });
   prove(pair, node, overlaps(d) ? overlap_bound(pair, node) : d.lower_bound - h);

@@ -19,22 +19,23 @@ inline const image::Piece& piece_b(const PairState& pair, const Node& node) noex
   return pair.image_b->pieces[node.piece_b];
 }
 
-/// Node::rest and Node::certain now: less what a's points can have moved since they were proved.
-double rest_now(const PairState& pair, const Node& node) noexcept;
-double certain_now(const PairState& pair, const Node& node) noexcept;
+/// Node::lower_bound and Node::certified now: less what a's points can have moved since they were
+/// proved.
+double lower_bound_now(const PairState& pair, const Node& node) noexcept;
+double certified_now(const PairState& pair, const Node& node) noexcept;
 
 inline bool is_near(const PairState& pair, const Node& node) noexcept {
-  return rest_now(pair, node) < pair.delta;
+  return lower_bound_now(pair, node) < pair.delta;
 }
 
 /// Takes over a lower bound proved at this tick's pose, unless what is left of the last one is
 /// better.
-void prove(const PairState& pair, Node& node, double certain) noexcept;
+void prove(const PairState& pair, Node& node, double certified) noexcept;
 
-/// Sets Node::rest for this tick's pose.
-void set_rest(const PairState& pair, Node& node, double rest) noexcept;
+/// Sets Node::lower_bound for this tick's pose.
+void set_lower_bound(const PairState& pair, Node& node, double lower_bound) noexcept;
 
-/// First bounds of a node that has none: its spheres, and what its parent is certain of.
+/// First bounds of a node that has none: its spheres, and what is certified of its parent.
 void begin(const PairState& pair, Node& node, double inherited) noexcept;
 
 /// What is asked of culling hulls.
@@ -47,11 +48,11 @@ enum class Ask : std::uint8_t {
 /// Does the queries, charges them, and proves the bounds that follow for the original surface.
 class Probe {
  public:
-  Probe(const Rules& rules, Meter& meter, Tally& tally, Discipline discipline) noexcept
-      : rules_(rules), meter_(meter), tally_(tally), discipline_(discipline) {}
+  Probe(const Rules& rules, Meter& meter, Tally& tally, Schedule schedule) noexcept
+      : rules_(rules), meter_(meter), tally_(tally), schedule_(schedule) {}
 
-  /// Of the culling hulls, exact up to delta and a little more, so that a node rests for some
-  /// ticks. With Bounds::paper of the hulls themselves, widened by h (eq. 5). certain_now() then
+  /// Of the culling hulls, exact up to delta and a little more, so that a node stays far for some
+  /// ticks. With Bounds::paper of the hulls themselves, widened by h (eq. 5). certified_now() then
   /// has what follows for the original surfaces.
   convex::Distance cull(const PairState& pair, Node& node, Ask ask = Ask::bound) noexcept;
 
@@ -78,12 +79,12 @@ class Probe {
     queries_ += queries;
   }
   void note(const convex::Distance& d) noexcept;
-  [[nodiscard]] double rest_margin(const PairState& pair, const Node& node) const noexcept;
+  [[nodiscard]] double far_margin(const PairState& pair, const Node& node) const noexcept;
 
   const Rules& rules_;
   Meter& meter_;
   Tally& tally_;
-  Discipline discipline_;
+  Schedule schedule_;
   std::uint64_t queries_ = 0;
   bool capped_ = false;
 };

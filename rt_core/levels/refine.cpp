@@ -3,9 +3,7 @@
 
 #include "rt_core/levels/interpolate.hpp"
 #include "rt_core/levels/leaf_contact.hpp"
-#include "rt_core/levels/recall.hpp"
 #include "rt_core/levels/start.hpp"
-#include "rt_core/levels/surface_stop.hpp"
 
 namespace palpate::levels {
 namespace {
@@ -24,26 +22,13 @@ void allow(Node& node, bool a, bool b) noexcept {
 void wait_for_split(Work& work, std::uint32_t index) noexcept {
   const Node& node = work.tree[index];
   const PairState& pair = work.pair_of(node);
-  const double certain = certain_now(pair, node);
-  work.wait({rank(work, node, certain), certain * pair.unit_m, index, !pair.searches});
+  const double certified = certified_now(pair, node);
+  work.wait({rank(work, node, certified), certified * pair.unit_m, index, true});
 }
 
-bool is_below(const ImageView& image, std::uint32_t piece, std::uint32_t top) noexcept {
-  for (std::uint32_t level = 0; piece != kNone && level <= image::kMaxLevels; ++level) {
-    if (piece == top) return true;
-    piece = image.pieces[piece].parent;
-  }
-  return false;
-}
-
-/// Until it is measured, a child stands where its parent did; a contact of original pieces goes to
-/// the child that holds them.
-void inherit(const PairState& pair, const Node& parent, Node& child) noexcept {
-  hand_over(parent, child);
-  if (has_dived(child) && !(is_below(*pair.image_a, child.leaf_a, child.piece_a) &&
-                            is_below(*pair.image_b, child.leaf_b, child.piece_b))) {
-    child.contact = 0;
-  }
+/// Until it is measured, a child stands where its parent did.
+void inherit(const Node& parent, Node& child) noexcept {
+  copy_contact(parent, child);
   child.s_star = parent.s_star;
 }
 
@@ -57,7 +42,7 @@ void split(Work& work, std::uint32_t index) noexcept {
   const Piece& piece = split_a ? a : b;
   if (!work.tree.split(index, split_a, piece.first_child, piece.children)) {
     work.result.truncated_by_memory = true;
-    work.leave(index, work.certain_m(parent));
+    work.leave(index, work.certified_m(parent));
     return;
   }
   work.tally.count([&](auto& counters) {
@@ -67,20 +52,13 @@ void split(Work& work, std::uint32_t index) noexcept {
   note_blending(work, index);
   for (std::uint32_t c = parent.first_child; c != kNone; c = work.tree[c].next_sibling) {
     Node& child = work.tree[c];
-    begin(pair, child, certain_now(pair, parent));
-    inherit(pair, parent, child);
+    begin(pair, child, certified_now(pair, parent));
+    inherit(parent, child);
     wait_if_near(work, c);
   }
 }
 
 void stop(Work& work, std::uint32_t index) noexcept { work.stopped.add(work.tree[index], index); }
-
-void stop_on_surface(Work& work, std::uint32_t index, const LeafContact& contact) noexcept {
-  Node& node = work.tree[index];
-  keep_on_surface(work.pair_of(node), node, contact);
-  work.add_contact(node, contact);
-  stop(work, index);
-}
 
 /// The contact kept until now is none, or in an exact query none for sure only where the pieces are
 /// the original ones.
@@ -88,16 +66,10 @@ void doubt(const Work& work, Node& node, bool refines) noexcept {
   node.contact = work.rules.exact && refines && node.contact != 0 ? kDoubtful : 0;
 }
 
-/// Keeps the contact of two pieces in the node, and reports it where refinement stops here and does
-/// not dive. One of finer pieces, that a dive found before or that was remembered (recall.hpp),
-/// stays while it is one: it is the better guess.
-/// @return what leaf_contact() says; nothing where it was not asked
-LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops) noexcept {
-  const bool dives = work.dives(node);
-  const bool coarser = work.rules.exact && !stops;
-  if ((dives || coarser) && has_dived(node) &&
-      remeasured(work.pair_of(node), node).distance < work.pair_of(node).delta)
-    return {};
+/// Keeps the contact of two pieces in the node, and reports it where refinement stops here.
+/// @return what leaf_contact() says
+LeafContact measure_contact(Work& work, Node& node, const convex::Distance& d,
+                            bool stops) noexcept {
   const PairState& pair = work.pair_of(node);
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
@@ -107,16 +79,15 @@ LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops)
   doubt(work, node, !stops);
   if (contact.interrupted) {
     work.result.truncated_by_units = true;
-    work.leave_unresolved(work.certain_m(node), node);
+    work.leave_unresolved(work.certified_m(node), node);
   }
   if (!contact.found) return contact;
   const bool original = !is_simplified(a) && !is_simplified(b);
   if (original && !contact.interrupted) prove(pair, node, contact.lower_bound);
   work.note_cap(pair, contact);
   if (contact.distance >= pair.delta) return contact;
-  keep(pair, a, b, contact, node);
-  remember(work, node);
-  if (stops && !dives) work.add_contact(node, contact);
+  keep_contact(pair, a, b, contact, node);
+  if (stops) work.add_contact(node, contact);
   return contact;
 }
 
@@ -126,7 +97,7 @@ LeafContact touch(Work& work, Node& node, const convex::Distance& d, bool stops)
 void refine_hidden(const Work& work, const Node& node, const convex::Distance& d,
                    const LeafContact& contact, Detail& missing) noexcept {
   const PairState& pair = work.pair_of(node);
-  if (work.dives(node) || pair.nearest <= d.distance + kEqual) return;
+  if (pair.nearest <= d.distance + kEqual) return;
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
   missing.refine_a = contact.hidden_a && is_simplified(a) && a.children != 0;
@@ -139,17 +110,15 @@ void measure_bound(Work& work, std::uint32_t index) noexcept {
   const PairState& pair = work.pair_of(node);
   const Piece& a = piece_a(pair, node);
   const Piece& b = piece_b(pair, node);
-  const SurfaceStop surface = probe_surface(work, node);
-  set_rest(pair, node, certain_now(pair, node));
+  static_cast<void>(work.probe.cull(pair, node, Ask::nearness));
+  set_lower_bound(pair, node, certified_now(pair, node));
   if (!work.is_near(node)) {
     node.contact = 0;
-  } else if (surface.stops) {
-    stop_on_surface(work, index, surface.contact);
-  } else {
-    const bool all = work.rules.exact;
-    allow(node, a.children != 0 && (all || is_free(a)), b.children != 0 && (all || is_free(b)));
-    split(work, index);
+    return;
   }
+  const bool all = work.rules.exact;
+  allow(node, a.children != 0 && (all || is_free(a)), b.children != 0 && (all || is_free(b)));
+  split(work, index);
 }
 
 void measure_metric(Work& work, std::uint32_t index) noexcept {
@@ -165,25 +134,18 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
   }
   node.s_star = static_cast<float>(missing.s_star);
   node.excess = static_cast<float>(missing.excess);
-  if (work.rests_apart(node, d)) {
+  if (work.proves_far(node, d)) {
     node.contact = 0;
     return;
   }
   bool refines = missing.refine_a || missing.refine_b;
-  if (refines && may_stop_on_surface(work, node) && !work.out_of_budget()) {
-    const SurfaceStop surface = probe_surface(work, node);
-    if (surface.stops) {
-      stop_on_surface(work, index, surface.contact);
-      return;
-    }
-  }
   if (d.lower_bound < pair.delta) {
     // Overlap of simplified hulls is no contact: the last one, of an ancestor apart, stands.
     const LeafContact contact =
-        refines && convex::overlaps(d) ? LeafContact{} : touch(work, node, d, !refines);
+        refines && convex::overlaps(d) ? LeafContact{} : measure_contact(work, node, d, !refines);
     if (!refines) refine_hidden(work, node, d, contact, missing);
     refines = missing.refine_a || missing.refine_b;
-  } else if (!work.dives(node) || !has_dived(node)) {
+  } else {
     doubt(work, node, refines);
   }
   if (refines) {
@@ -198,7 +160,6 @@ void measure(Work& work, std::uint32_t index) noexcept {
   Node& node = work.tree[index];
   const PairState& pair = work.pair_of(node);
   set(node, kMeasured);
-  if (pair.searches) set(node, kLooked);
   const bool leaves = piece_a(pair, node).children == 0 && piece_b(pair, node).children == 0;
   if (!leaves && work.only_culls(node)) {
     measure_bound(work, index);

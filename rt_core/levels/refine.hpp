@@ -8,11 +8,10 @@ namespace palpate::levels {
 
 /// Works the queue off while the budget lasts.
 ///
-/// Near front nodes are measured first, nearest first: at delta or more they rest; where missing
-/// detail could be felt (rules.hpp), or what there is of it hides a contact that could be
+/// Near front nodes are measured first, nearest first: at delta or more they are left alone; where
+/// missing detail could be felt (rules.hpp), or what there is of it hides a contact that could be
 /// (LeafContact::hidden_a), they wait to be split, in the order of Rules::order over all pairs of
-/// bodies (start.hpp); else they stop and give a contact, as they do with Rules::stop_on_surface
-/// where that is already one of the original surfaces (surface_stop.hpp). In an exact query that
+/// bodies (start.hpp); else they stop and give a contact. In an exact query that
 /// may end (Work::may_end) all detail is missing: contacts of simplified pieces stand in until it
 /// is there. A split replaces a node by all pairs of one piece's children, which are measured
 /// before the next split. What is still on the queue afterwards is not resolved.

@@ -39,10 +39,9 @@ bool is_wide(const image::Piece& piece, double scale, double delta) noexcept {
 
 }  // namespace
 
-void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
-          const LeafContact& contact, Node& node) noexcept {
+void keep_contact(const PairState& pair, const image::Piece& a, const image::Piece& b,
+                  const LeafContact& contact, Node& node) noexcept {
   node.contact = kFound;
-  node.leaf_a = node.leaf_b = kNone;
   node.witness_a = vec_cast<float>(contact.point_a);
   node.witness_b = vec_cast<float>(to_b(pair, contact.point_b));
   const double share = contact.share > kLeastShare ? contact.share : kLeastShare;
@@ -70,8 +69,8 @@ LeafContact remeasured(const PairState& pair, const Node& node) noexcept {
   const double guess =
       faded(along >= 0 ? contact.upper_bound : along + slid, contact.share, pair.delta);
   // Points that have slid past each other may look deep where it is proved that nothing is.
-  const double certain = certain_now(pair, node);
-  contact.distance = guess < certain ? certain : guess;
+  const double certified = certified_now(pair, node);
+  contact.distance = guess < certified ? certified : guess;
   return contact;
 }
 
@@ -85,28 +84,6 @@ bool Report::add(const PairState& pair, Node& node, const LeafContact& contact) 
   note_upper(pair, node, contact);
   if (count_ == contacts_.size()) return false;
   node.report = count_++;
-  replace(pair, node, contact);
-  return true;
-}
-
-Vec3d Report::centre_m(const PairState& pair, const Node& node,
-                       const LeafContact& contact) const noexcept {
-  const Vec3d middle = 0.5 * (contact.point_a + contact.point_b);
-  const bool dived = has_dived(node);
-  const image::Piece& a = pair.image_a->pieces[dived ? node.leaf_a : node.piece_a];
-  const image::Piece& b = pair.image_b->pieces[dived ? node.leaf_b : node.piece_b];
-  convex::PressureCentre centre;
-  if (is_wide(a, pair.scale_a, pair.delta) && is_wide(b, pair.scale_b, pair.delta)) {
-    const convex::Hull hull_a = hull_of(*pair.image_a, a, pair.scale_a);
-    const convex::Hull hull_b = hull_of(*pair.image_b, b, pair.scale_b);
-    centre = convex::centre_of_pressure({hull_a, hull_b, pair.b_in_a}, contact.normal,
-                                        pair.delta - contact.distance, middle, scratch_);
-  }
-  return in_world(pair, middle + centre.share * (centre.at - middle));
-}
-
-void Report::replace(const PairState& pair, const Node& node, const LeafContact& contact) noexcept {
-  note_upper(pair, node, contact);
   Contact& out = contacts_[node.report];
   out.point_a_m = in_world(pair, contact.point_a);
   out.point_b_m = in_world(pair, contact.point_b);
@@ -120,11 +97,27 @@ void Report::replace(const PairState& pair, const Node& node, const LeafContact&
   out.level_a = piece_a(pair, node).level;
   out.piece_b = node.piece_b;
   out.level_b = piece_b(pair, node).level;
+  return true;
+}
+
+Vec3d Report::centre_m(const PairState& pair, const Node& node,
+                       const LeafContact& contact) const noexcept {
+  const Vec3d middle = 0.5 * (contact.point_a + contact.point_b);
+  const image::Piece& a = piece_a(pair, node);
+  const image::Piece& b = piece_b(pair, node);
+  convex::PressureCentre centre;
+  if (is_wide(a, pair.scale_a, pair.delta) && is_wide(b, pair.scale_b, pair.delta)) {
+    const convex::Hull hull_a = hull_of(*pair.image_a, a, pair.scale_a);
+    const convex::Hull hull_b = hull_of(*pair.image_b, b, pair.scale_b);
+    centre = convex::centre_of_pressure({hull_a, hull_b, pair.b_in_a}, contact.normal,
+                                        pair.delta - contact.distance, middle, scratch_);
+  }
+  return in_world(pair, middle + centre.share * (centre.at - middle));
 }
 
 void Report::mix_distance(const PairState& pair, const Node& node, double other,
                           double share) noexcept {
-  const double lower_m = certain_now(pair, node) * pair.unit_m;  // what was certain before mixing
+  const double lower_m = certified_now(pair, node) * pair.unit_m;  // as it was before mixing
   if (lower_m < mixed_lower_m_) mixed_lower_m_ = lower_m;
   Contact& c = contacts_[node.report];
   c.distance_m = share * c.distance_m + (1 - share) * other * pair.unit_m;

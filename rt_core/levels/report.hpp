@@ -18,18 +18,16 @@ struct QueryResult;
 
 /// Keeps a contact in its node: as material points, with the share of it that is felt, and how much
 /// farther apart the original surfaces can be (the surface deviations of both pieces).
-void keep(const PairState& pair, const image::Piece& a, const image::Piece& b,
-          const LeafContact& contact, Node& node) noexcept;
+void keep_contact(const PairState& pair, const image::Piece& a, const image::Piece& b,
+                  const LeafContact& contact, Node& node) noexcept;
 
 /// Gives a node the contact kept in another one, in or above whose subtree it is.
-inline void hand_over(const Node& from, Node& to) noexcept {
+inline void copy_contact(const Node& from, Node& to) noexcept {
   to.contact = from.contact;
   to.witness_a = from.witness_a;
   to.witness_b = from.witness_b;
   to.normal = from.normal;
   to.slack = from.slack;
-  to.leaf_a = from.leaf_a;
-  to.leaf_b = from.leaf_b;
 }
 
 /// The contact kept in a node, measured again at its material points, with its normal as it turned
@@ -49,9 +47,6 @@ class Report {
 
   /// Added so far, those that a mix has dropped too.
   [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
-
-  /// Puts another one in the place of what was added for a node.
-  void replace(const PairState& pair, const Node& node, const LeafContact& contact) noexcept;
 
   /// Where the force of a node's contact acts, in the world. O(1) (convex/pressure.hpp)
   [[nodiscard]] Vec3d centre_m(const PairState& pair, const Node& node,

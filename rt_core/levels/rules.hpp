@@ -14,11 +14,6 @@ namespace palpate::levels {
 struct Rules {
   bool exact = false;
   bool interpolate = true;
-  bool contact_dive = false;
-  bool front_tracking = true;
-  bool motion_bounds = true;
-  bool root_short_cut = true;
-  bool stop_on_surface = false;
   Bounds bounds = Bounds::tight;
   Order order = Order::deviation;
   double s0 = 0;
@@ -26,11 +21,11 @@ struct Rules {
 };
 
 /// How a query is worked off. What it finds, if nothing ends it, does not depend on it.
-enum class Discipline : std::uint8_t {
-  by_worth,  ///< it may end at any moment: what matters most comes first, with tight bounds on the
-             ///< way
-  whole,     ///< nothing ends it before it is exact: in the order, and with the bounds, that cost
-             ///< least
+enum class Schedule : std::uint8_t {
+  by_priority,  ///< it may end at any moment: what matters most comes first, with tight bounds on
+                ///< the way
+  exhaustive,  ///< nothing ends it before it is exact: in the order, and with the bounds, that cost
+               ///< least
 };
 
 /// Detail that a pair of pieces leaves out.

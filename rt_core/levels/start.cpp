@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/start.hpp"
 
-#include <bit>
-
-#include "rt_core/levels/recall.hpp"
-
 namespace palpate::levels {
 namespace {
 
@@ -25,10 +21,8 @@ constexpr double kFrontCut = 0.5;
 constexpr double kCutFrom[] = {1, 0.75, 0.5, 0.25, 0};
 /// For cuts a budget of fewer units counts as this many. What is near about one contact has to fit
 /// into the front, measured in turns where a tick does not do for all of it: a smaller cut would
-/// split its way down to the contact anew in each tick, through the largest hulls, and not arrive.
+/// split its way down to the contact again in each tick, through the largest hulls, and not arrive.
 constexpr double kLeastAffordable = 32;
-/// While a first contact is looked for, a front of fewer nodes is not cut back.
-constexpr std::size_t kSearchedFront = 512;
 /// The front's nodes lie anywhere in the pool: this many are on their way from memory.
 constexpr std::size_t kAhead = 8;
 
@@ -51,36 +45,33 @@ void restart(Work& work, PairState& pair) noexcept {
 void rise_if_apart(Work& work, PairState& pair) noexcept {
   Node& root = work.tree[pair.root];
   if (work.tree.in_front(pair.root) || work.out_of_budget()) return;
-  if (!work.rules.motion_bounds) begin(pair, root, -kInfinity);
-  if (work.is_near(root) && !work.rests(root)) return;
+  if (work.is_near(root) && !work.proves_far(root)) return;
   work.tree.collapse(pair.root);
   root.contact = 0;
 }
 
 void place(Work& work, PairState& pair) noexcept {
-  pair.searches = work.may_end && !pair.fresh && pair.nearest >= pair.delta;
   pair.nearest = pair.delta;
   pair.apart = -kInfinity;
   const Node& root = work.tree[pair.root];
   const bool apart = sphere_distance(pair, piece_a(pair, root), piece_b(pair, root)) >= pair.delta;
-  if (pair.fresh || apart || !work.rules.front_tracking || jumped(pair)) {
+  if (pair.fresh || apart || jumped(pair)) {
     restart(work, pair);
-  } else if (work.rules.root_short_cut) {
+  } else {
     rise_if_apart(work, pair);
   }
-  pair.apart = certain_now(pair, root);
+  pair.apart = certified_now(pair, root);
 }
 
 /// Where the motion bound has run out the spheres may still do: they cost no query.
 void renew(Work& work, Node& node) noexcept {
   const PairState& pair = work.pair_of(node);
-  if (!work.rules.motion_bounds) return begin(pair, node, -kInfinity);
   if (!work.is_near(node)) return;
   const double spheres = sphere_distance(pair, piece_a(pair, node), piece_b(pair, node));
-  if (spheres - kSphereRounding > certain_now(pair, node))
+  if (spheres - kSphereRounding > certified_now(pair, node))
     prove(pair, node, spheres - kSphereRounding);
   if (spheres < pair.delta + kSphereRounding) return;
-  set_rest(pair, node, spheres - kSphereRounding);
+  set_lower_bound(pair, node, spheres - kSphereRounding);
   node.contact = 0;
 }
 
@@ -100,13 +91,13 @@ double near_children(const Work& work, const Node& parent) noexcept {
 }
 
 /// To its parent, where that has none that is nearer.
-void hand_up(Work& work, const PairState& pair, const Node& node) noexcept {
+void pass_contact_up(Work& work, const PairState& pair, const Node& node) noexcept {
   if (node.contact == 0) return;
   Node& above = work.tree[node.parent];
   const bool better = above.contact == 0 || node.contact < above.contact ||
                       (node.contact == above.contact &&
                        remeasured(pair, node).distance < remeasured(pair, above).distance);
-  if (better) hand_over(node, above);
+  if (better) copy_contact(node, above);
 }
 
 /// Every ancestor gets the nearest contact below it, so that none is lost to a cut. What it kept
@@ -118,7 +109,7 @@ void carry_contacts_up(Work& work, const PairState& pair) noexcept {
     for (; !work.tree.in_front(at); at = work.tree[at].first_child) work.tree[at].contact = 0;
     for (;; at = work.tree[at].parent) {
       if (at == pair.root) return;
-      hand_up(work, pair, work.tree[at]);
+      pass_contact_up(work, pair, work.tree[at]);
       if (work.tree[at].next_sibling != kNone) break;
     }
     at = work.tree[at].next_sibling;
@@ -148,57 +139,14 @@ bool raise_near(Work& work, double from, double most) noexcept {
   return raised;
 }
 
-bool any_searches(const Work& work) noexcept {
-  for (const PairState& pair : work.memory.pairs) {
-    if (pair.searches) return true;
-  }
-  return false;
-}
-
 bool is_affordable(const Work& work, double most) noexcept {
   return static_cast<double>(work.tree.front().size()) <= most || count_near(work) <= most;
-}
-
-/// Where a contact is kept none is looked for, nor where the budget does for all that is near.
-/// Where every near node has been looked at the next round begins.
-void begin_searches(Work& work, double affordable) noexcept {
-  if (!any_searches(work)) return;
-  if (is_affordable(work, kFrontCut * affordable)) {
-    for (PairState& pair : work.memory.pairs) pair.searches = false;
-    return;
-  }
-  bool round_over = true;
-  for (const std::uint32_t index : work.tree.front()) {
-    const Node& node = work.tree[index];
-    PairState& pair = work.pair_of(node);
-    if (!pair.searches || !work.is_near(node)) continue;
-    if (node.contact != 0 && remeasured(pair, node).distance < pair.delta) pair.searches = false;
-    if ((node.flags & kLooked) == 0) round_over = false;
-  }
-  if (!round_over) return;
-  for (const std::uint32_t index : work.tree.front()) clear(work.tree[index], kLooked);
-}
-
-/// Bodies that have just lost their last contact are searched for one at once, unless they touch
-/// where they have before. Simplified pieces may, where what is below them does not: bodies that
-/// had no contact in spite of it are searched.
-void recall_touches(Work& work, double affordable) noexcept {
-  if (!remembers(work)) return;
-  const bool enough = is_affordable(work, kFrontCut * affordable);
-  for (std::size_t i = 0; i < work.memory.pairs.size(); ++i) {
-    PairState& pair = work.memory.pairs[i];
-    const bool touches = recall(work, i, enough);
-    pair.recalled = touches && pair.searches && !pair.recalled;
-    if (pair.recalled) pair.searches = false;
-    if (!touches && !enough) pair.searches = true;
-  }
 }
 
 /// What is farthest goes first: it is felt least.
 void cut_back(Work& work, double in_budget) noexcept {
   const double affordable = in_budget > kLeastAffordable ? in_budget : kLeastAffordable;
   if (is_affordable(work, kFrontOverBudget * affordable)) return;
-  if (any_searches(work) && work.tree.front().size() < kSearchedFront) return;
   const double most = kFrontCut * affordable;
   for (const PairState& pair : work.memory.pairs) carry_contacts_up(work, pair);
   for (const double from : kCutFrom) {
@@ -218,26 +166,11 @@ double known_distance(const PairState& pair, const Node& node) noexcept {
   return most < pair.delta ? most : pair.delta;
 }
 
-/// Of a search: what has been measured is split at once; then the smallest pieces go first, of
-/// those of a size what is nearest; and what this round has looked at comes last.
-double search_rank(const PairState& pair, const Node& node, double lower) noexcept {
-  constexpr double kStep = 8;             // more than bounds of near nodes can differ by
-  constexpr double kLast = 2048 * kStep;  // beyond every exponent
-  if ((node.flags & kMeasured) != 0) return -kStep;
-  if ((node.flags & kLooked) != 0) return kLast + lower;
-  const double size = pair.scale_a * static_cast<double>(piece_a(pair, node).radius) +
-                      pair.scale_b * static_cast<double>(piece_b(pair, node).radius);
-  const std::uint64_t exponent = std::bit_cast<std::uint64_t>(size) >> 52;
-  return kStep * static_cast<double>(exponent) + lower;
-}
-
 }  // namespace
 
 void start(Work& work) noexcept {
   for (PairState& pair : work.memory.pairs) place(work, pair);
   const double affordable = work.meter.queries_affordable(work.memory.query_ns);
-  begin_searches(work, affordable);
-  recall_touches(work, affordable);
   cut_back(work, affordable);
   const std::span<const std::uint32_t> front = work.tree.front();
   for (std::size_t i = 0; i < front.size(); ++i) {
@@ -245,7 +178,6 @@ void start(Work& work) noexcept {
     const std::uint32_t index = front[i];
     Node& node = work.tree[index];
     clear(node, kOfThisTick);
-    if (!work.pair_of(node).searches) clear(node, kLooked);
     node.report = kNone;
     renew(work, node);
     wait_if_near(work, index);
@@ -256,24 +188,19 @@ void wait_if_near(Work& work, std::uint32_t index) noexcept {
   const Node& node = work.tree[index];
   if (!work.is_near(node)) return;
   const PairState& pair = work.pair_of(node);
-  const bool ranked = work.only_culls(node) || pair.searches;
-  const double certain = certain_now(pair, node);
-  work.wait({ranked ? rank(work, node, certain) : certain, certain * pair.unit_m, index,
-             ranked && !pair.searches});
+  const bool ranked = work.only_culls(node);
+  const double certified = certified_now(pair, node);
+  work.wait(
+      {ranked ? rank(work, node, certified) : certified, certified * pair.unit_m, index, ranked});
 }
 
 double rank(const Work& work, const Node& node, double lower) noexcept {
   const PairState& pair = work.pair_of(node);
-  if (pair.searches) return search_rank(pair, node, lower);
-  const Order order = work.rules.order;
-  if ((work.rules.exact && !work.may_end) || order == Order::nearest) return lower;
-  if (order == Order::force && work.may_end) return lower - known_distance(pair, node);
+  if (work.rules.exact && !work.may_end) return lower;
+  if (work.rules.order == Order::force && work.may_end) return lower - known_distance(pair, node);
   // What is missing counts for no more than what the parent missed: refinement has an order.
   const float of_parent = node.parent == kNone ? node.s_star : work.tree[node.parent].s_star;
-  const double s = static_cast<double>(node.s_star < of_parent ? node.s_star : of_parent);
-  if (order != Order::ratio) return -s;
-  constexpr double kLeastDistance = 1e-9;
-  return -s / (lower > kLeastDistance ? lower : kLeastDistance);
+  return -static_cast<double>(node.s_star < of_parent ? node.s_star : of_parent);
 }
 
 }  // namespace palpate::levels

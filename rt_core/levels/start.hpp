@@ -8,22 +8,14 @@ namespace palpate::levels {
 
 /// Puts all near front nodes on the queue.
 ///
-/// A pair of bodies starts from its root at first, after a jump, and without
-/// Rules::front_tracking; where the roots' spheres, or with Rules::root_short_cut their hulls, are
-/// delta or more apart, the root is its whole front. So the front is never deeper than a cold start
-/// would make it there, and the pair costs one query. Where the budget would not do for measuring
-/// the near nodes again, they give way to their parents, which take over the nearest contact below
-/// them, those with the farthest first and no more than have to: what has been found is felt, if
-/// coarser. But bodies that had no contact in the last tick, and keep none, are searched for a
-/// first one where the budget is less than two units for each near node: the cut stays as deep as
-/// it is, up to 512 nodes, and the smallest pieces are measured and split first, each once before
-/// any comes again. Measuring such a front node by node would be all that the budget does for, in
-/// every tick anew. In exact queries with a budget what bodies have touched with of late is
-/// measured again before the cut (recall.hpp), and bodies that have just lost their last contact,
-/// and do not touch there, are searched at once. Nodes are near by their motion bounds and, where
-/// these have run out, by their spheres at the present pose; without Rules::motion_bounds by the
-/// spheres alone. What the query of the roots proves holds for every pair of pieces below them.
-/// O(front), and for each pair of bodies a query and what recall() takes.
+/// A pair of bodies starts from its root at first and after a jump; where the roots' spheres or
+/// hulls are delta or more apart, the root is its whole front. So the front is never deeper than a
+/// cold start would make it there, and the pair costs one query. Where the budget would not do for
+/// measuring the near nodes again, they give way to their parents, which take over the nearest
+/// contact below them, those with the farthest first and no more than have to: what has been found
+/// is felt, if coarser. Nodes are near by their motion bounds and, where these have run out, by
+/// their spheres at the present pose. What the query of the roots proves holds for every pair of
+/// pieces below them. O(front), and a query for each pair of bodies.
 void start(Work& work) noexcept;
 
 /// Puts a node on the queue if it is near.
@@ -35,9 +27,7 @@ void wait_if_near(Work& work, std::uint32_t index) noexcept;
 /// missing, not whether anything is felt there): the widest gap first, from `lower` up to the
 /// contact that the node keeps, as far as its points are apart by now and the original surfaces may
 /// be farther apart than those, or up to delta where it keeps none. Without a budget, and with
-/// Order::deviation, the largest s*; free levels, which have none, first. While a first contact is
-/// searched for: what has been measured, then by size (in powers of two) and `lower`, and what this
-/// round has looked at last.
+/// Order::deviation, the largest s*; free levels, which have none, first.
 /// @param lower  what is proved of the distance
 double rank(const Work& work, const Node& node, double lower) noexcept;
 

@@ -18,10 +18,7 @@ inline constexpr std::uint8_t kMeasured = 1;  ///< this tick
 inline constexpr std::uint8_t kStopped = 2;  ///< this tick: near, and no detail missing can be felt
 inline constexpr std::uint8_t kRefineA = 4;  ///< this tick: near, and a is to be refined
 inline constexpr std::uint8_t kRefineB = 8;
-inline constexpr std::uint8_t kDived =
-    16;  ///< this tick: has looked for a contact of original pieces
-inline constexpr std::uint8_t kLooked = 32;  ///< measured in this round of a search (start.hpp)
-inline constexpr std::uint8_t kOfThisTick = kMeasured | kStopped | kRefineA | kRefineB | kDived;
+inline constexpr std::uint8_t kOfThisTick = kMeasured | kStopped | kRefineA | kRefineB;
 
 /// Node::contact.
 inline constexpr std::uint8_t kFound = 1;  ///< a query, perhaps of an ancestor, gave a contact
@@ -35,10 +32,10 @@ struct alignas(64) Node {
   // body pair's odometers stood at travel_at and turn_at, and shrink by the motion since.
   double travel_at = 0;
   double turn_at = 0;
-  float rest = 0;     ///< while this is delta or more, the node need not be looked at: neither its
-                      ///< pieces nor what is below them give a contact
-  float certain = 0;  ///< lower bound of the distance of the two pieces' original descendants
-  float reach = 0;    ///< farthest point of piece a from the centre of body a: lever arm of turning
+  float lower_bound = 0;  ///< while this is delta or more, the node need not be looked at: neither
+                          ///< its pieces nor what is below them give a contact
+  float certified = 0;    ///< lower bound of the distance of the two pieces' original descendants
+  float reach = 0;  ///< farthest point of piece a from the centre of body a: lever arm of turning
   std::uint16_t pair = 0;    ///< body pair
   std::uint8_t contact = 0;  ///< 0: none is kept at the witnesses; else kFound, kDoubtful
   std::uint8_t flags = 0;
@@ -61,9 +58,6 @@ struct alignas(64) Node {
   float slack = 0;    ///< the original surfaces are at most this farther apart than the witnesses
   float s_star = 0;   ///< eq. 7; an ancestor's until the node is measured
   float excess = 0;   ///< Detail::excess
-  /// Whose contact is kept, where a dive found it (dive.hpp); else kNone
-  std::uint32_t leaf_a = kNone;
-  std::uint32_t leaf_b = kNone;
   // Warm starts.
   convex::Cache own;      ///< of the pieces' hulls
   convex::Cache culling;  ///< of their culling hulls
@@ -75,11 +69,6 @@ inline void set(Node& node, std::uint8_t flags) noexcept {
 }
 inline void clear(Node& node, std::uint8_t flags) noexcept {
   node.flags = static_cast<std::uint8_t>(node.flags & ~flags);
-}
-
-/// Keeps a contact of original pieces, found by a dive.
-inline bool has_dived(const Node& node) noexcept {
-  return node.contact != 0 && node.leaf_a != kNone;
 }
 
 /// A fixed pool of nodes, one tree for every body pair, all fronts in one array. A node is replaced

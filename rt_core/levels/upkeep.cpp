@@ -2,7 +2,6 @@
 #include "rt_core/levels/upkeep.hpp"
 
 #include "rt_core/levels/interpolate.hpp"
-#include "rt_core/levels/surface_stop.hpp"
 
 namespace palpate::levels {
 namespace {
@@ -25,7 +24,7 @@ bool children_in_front(const TestTree& tree, const Node& parent) noexcept {
   return true;
 }
 
-bool children_rest(const Work& work, const Node& parent) noexcept {
+bool children_far(const Work& work, const Node& parent) noexcept {
   const TestTree& tree = work.tree;
   for (std::uint32_t c = parent.first_child; c != kNone; c = tree[c].next_sibling) {
     if (work.is_near(tree[c])) return false;
@@ -34,25 +33,12 @@ bool children_rest(const Work& work, const Node& parent) noexcept {
 }
 
 /// Whether the parent gives no contact, nor does anything below it.
-bool raise_at_rest(Work& work, std::uint32_t parent) noexcept {
+bool raise_far(Work& work, std::uint32_t parent) noexcept {
   Node& node = work.tree[parent];
-  if (!children_rest(work, node) || (work.is_near(node) && !work.rests(node))) return false;
+  if (!children_far(work, node) || (work.is_near(node) && !work.proves_far(node))) return false;
   work.tree.collapse(parent);
   node.contact = 0;
   clear(node, kOfThisTick);
-  return true;
-}
-
-/// The contacts below it are this tick's; from the next one on there is its own.
-bool raise_to_surface(Work& work, std::uint32_t parent) noexcept {
-  Node& node = work.tree[parent];
-  if (!may_stop_on_surface(work, node) || !work.is_near(node)) return false;
-  const SurfaceStop surface = probe_surface(work, node);
-  if (!surface.stops) return false;
-  work.tree.collapse(parent);
-  keep_on_surface(work.pair_of(node), node, surface.contact);
-  clear(node, kOfThisTick);
-  work.stopped.add(node, parent);
   return true;
 }
 
@@ -79,8 +65,7 @@ void raise(Work& work) noexcept {
     if (next >= tree.front().size()) next = 0;
     const std::uint32_t parent = tree[tree.front()[next++]].parent;
     if (parent == kNone) continue;
-    const bool raised = children_in_front(tree, tree[parent]) &&
-                        (raise_at_rest(work, parent) || raise_to_surface(work, parent));
+    const bool raised = children_in_front(tree, tree[parent]) && raise_far(work, parent);
     if (!raised && !work.out_of_budget()) renew_detail(work, parent);
   }
 }
@@ -89,10 +74,10 @@ void tighten(Work& work) noexcept {
   if (work.rules.exact || work.rules.bounds == Bounds::paper) return;
   for (const std::uint32_t index : work.stopped.all()) {
     const Node& node = work.tree[index];
-    if (!work.tree.in_front(index) || work.dives(node)) continue;
+    if (!work.tree.in_front(index)) continue;
     if (!work.probe.has_tighter(work.pair_of(node), node)) continue;
-    const double certain_m = work.certain_m(node);
-    work.waiting.push({certain_m, certain_m, index, false});
+    const double certified_m = work.certified_m(node);
+    work.waiting.push({certified_m, certified_m, index, false});
   }
   const std::uint64_t end = spare_queries(work);
   while (!work.waiting.empty() && work.probe.queries() < end && !work.out_of_budget()) {

@@ -6,14 +6,14 @@
 
 namespace palpate::levels {
 
-/// A parent all of whose children rest, or that would stop on the surface by now
-/// (surface_stop.hpp), takes their place, so that the front does not grow for ever; what other
-/// parents miss is looked at again, in case that they would stop by now (interpolate.hpp). Looks at
-/// a part of the front a tick, in turn, and spends a share of the tick's queries.
+/// A parent all of whose children are far takes their place, so that the front does not grow for
+/// ever; what other parents miss is looked at again, in case that they would stop by now
+/// (interpolate.hpp). Looks at a part of the front a tick, in turn, and spends a share of the
+/// tick's queries.
 void raise(Work& work) noexcept;
 
 /// The least lower bound of a stopped node sets the certificate, and the culling hulls may prove
-/// more than h does: they are asked, nearest first, for a share of the tick's queries.
+/// more than h does: they are queried, nearest first, for a share of the tick's queries.
 void tighten(Work& work) noexcept;
 
 }  // namespace palpate::levels

@@ -30,12 +30,12 @@ struct Earlier {
   }
 };
 
-/// Earliest first; where a query is worked off to its end (Discipline::whole) last first: a push or
-/// pop is then O(1), and what lies together in memory is worked off together.
+/// Earliest first; where a query is worked off to its end (Schedule::exhaustive) last first: a push
+/// or pop is then O(1), and what lies together in memory is worked off together.
 class WaitQueue {
  public:
-  WaitQueue(std::span<Waiting> storage, Discipline discipline) noexcept
-      : storage_(storage), heap_(storage), discipline_(discipline) {}
+  WaitQueue(std::span<Waiting> storage, Schedule schedule) noexcept
+      : storage_(storage), heap_(storage), schedule_(schedule) {}
 
   [[nodiscard]] bool empty() const noexcept { return items().empty(); }
   [[nodiscard]] std::span<const Waiting> items() const noexcept {
@@ -61,12 +61,12 @@ class WaitQueue {
   }
 
  private:
-  [[nodiscard]] bool is_heap() const noexcept { return discipline_ == Discipline::by_worth; }
+  [[nodiscard]] bool is_heap() const noexcept { return schedule_ == Schedule::by_priority; }
 
   std::span<Waiting> storage_;
   MinQueue<Waiting, Earlier> heap_;
   std::size_t stacked_ = 0;
-  Discipline discipline_;
+  Schedule schedule_;
 };
 
 }  // namespace palpate::levels

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/work.hpp"
 
+#include "rt_core/base/assert.hpp"
+
 namespace palpate::levels {
 
 bool Work::only_culls(const Node& node) const noexcept {
@@ -8,23 +10,23 @@ bool Work::only_culls(const Node& node) const noexcept {
   return (rules.exact && !may_end) || is_free(piece_a(pair, node)) || is_free(piece_b(pair, node));
 }
 
-bool Work::rests(Node& node) noexcept {
+bool Work::proves_far(Node& node) noexcept {
   const PairState& pair = pair_of(node);
-  if (!only_culls(node)) return rests_apart(node, probe.own(pair, node));
+  if (!only_culls(node)) return proves_far(node, probe.own(pair, node));
   static_cast<void>(probe.cull(pair, node, Ask::nearness));
-  set_rest(pair, node, certain_now(pair, node));
+  set_lower_bound(pair, node, certified_now(pair, node));
   return !is_near(node);
 }
 
-bool Work::rests_apart(Node& node, const convex::Distance& own) noexcept {
+bool Work::proves_far(Node& node, const convex::Distance& own) noexcept {
   const PairState& pair = pair_of(node);
-  if (own.lower_bound >= pair.delta && certain_now(pair, node) < pair.delta &&
+  if (own.lower_bound >= pair.delta && certified_now(pair, node) < pair.delta &&
       probe.has_tighter(pair, node) && !out_of_budget()) {
     static_cast<void>(probe.cull(pair, node));
   }
-  const double certain = certain_now(pair, node);
-  const bool own_counts = own.lower_bound < certain && !rules.exact && !dives(node);
-  set_rest(pair, node, own_counts ? own.lower_bound : certain);
+  const double certified = certified_now(pair, node);
+  const bool own_counts = own.lower_bound < certified && !rules.exact;
+  set_lower_bound(pair, node, own_counts ? own.lower_bound : certified);
   return !is_near(node);
 }
 
@@ -66,14 +68,6 @@ void Work::leave_doubtful(std::uint32_t index) noexcept {
     add_contact(node, remeasured(pair, node));
 }
 
-bool Work::dives(const Node& node) const noexcept {
-  if (!rules.contact_dive || rules.exact) return false;
-  const PairState& pair = pair_of(node);
-  const image::Piece& a = piece_a(pair, node);
-  const image::Piece& b = piece_b(pair, node);
-  return (a.children != 0 && is_simplified(a)) || (b.children != 0 && is_simplified(b));
-}
-
 void Work::note_cap(const PairState& pair, const LeafContact& contact) noexcept {
   if (!contact.capped) return;
   result.iteration_cap_met = true;
@@ -84,14 +78,13 @@ void Work::note_cap(const PairState& pair, const LeafContact& contact) noexcept 
 void Work::leave_time_for_contacts() noexcept { meter.expect_contacts(report.count() + kept); }
 
 void Work::add_contact(Node& node, const LeafContact& contact) noexcept {
+  PALPATE_ASSERT(node.report == kNone);
   PairState& pair = pair_of(node);
   if (contact.distance >= pair.delta) return;
   if (contact.distance < pair.nearest) pair.nearest = contact.distance;
-  pair.searches = false;
-  if (node.report != kNone) return report.replace(pair, node, contact);
   if (report.add(pair, node, contact)) return leave_time_for_contacts();
   result.truncated_by_memory = true;
-  leave_unresolved(certain_m(node), node);
+  leave_unresolved(certified_m(node), node);
 }
 
 }  // namespace palpate::levels

@@ -15,16 +15,16 @@ namespace palpate::levels {
 
 struct Work {
   Work(QueryMemory& query_memory, const Rules& query_rules, Meter& query_meter, Tally& query_tally,
-       Discipline discipline) noexcept
+       Schedule schedule) noexcept
       : memory(query_memory),
         tree(query_memory.tree),
         rules(query_rules),
         meter(query_meter),
         tally(query_tally),
-        may_end(query_rules.exact ? discipline == Discipline::by_worth : query_meter.limited()),
-        probe(query_rules, query_meter, query_tally, discipline),
+        may_end(query_rules.exact ? schedule == Schedule::by_priority : query_meter.limited()),
+        probe(query_rules, query_meter, query_tally, schedule),
         report(query_memory.contacts, *query_memory.pressure),
-        waiting(query_memory.waiting, discipline),
+        waiting(query_memory.waiting, schedule),
         stopped(query_memory.stopped) {}
 
   [[nodiscard]] PairState& pair_of(const Node& node) const noexcept {
@@ -33,9 +33,9 @@ struct Work {
   [[nodiscard]] bool is_near(const Node& node) const noexcept {
     return levels::is_near(pair_of(node), node);
   }
-  [[nodiscard]] double certain_m(const Node& node) const noexcept {
+  [[nodiscard]] double certified_m(const Node& node) const noexcept {
     const PairState& pair = pair_of(node);
-    return certain_now(pair, node) * pair.unit_m;
+    return certified_now(pair, node) * pair.unit_m;
   }
   [[nodiscard]] bool out_of_budget() const noexcept {
     return meter.out_of_units() || meter.out_of_time();
@@ -47,10 +47,10 @@ struct Work {
 
   /// Measures a node that is near: true where it and what is below it give no contact at the
   /// present poses. A query or two.
-  bool rests(Node& node) noexcept;
+  bool proves_far(Node& node) noexcept;
 
   /// The same with the query of its own hulls at hand.
-  bool rests_apart(Node& node, const convex::Distance& own) noexcept;
+  bool proves_far(Node& node, const convex::Distance& own) noexcept;
 
   /// Puts something on the queue. Should the budget end before its turn, the contact that it keeps
   /// is reported: time is left for that, too.
@@ -72,14 +72,11 @@ struct Work {
   /// What is left after all nodes: a doubtful contact where its bodies have none.
   void leave_doubtful(std::uint32_t index) noexcept;
 
-  /// A node whose contact a dive looks for where refinement stops at it (dive.hpp).
-  [[nodiscard]] bool dives(const Node& node) const noexcept;
-
   /// Notes an iteration cap met by a contact of original pieces, for the certificate.
   void note_cap(const PairState& pair, const LeafContact& contact) noexcept;
 
-  /// Reports the contact of a node if it is nearer than delta, in place of one reported before; or
-  /// that there was no room for it.
+  /// Reports the contact of a node, once a tick, if it is nearer than delta; or that there was no
+  /// room for it.
   void add_contact(Node& node, const LeafContact& contact) noexcept;
 
   QueryMemory& memory;

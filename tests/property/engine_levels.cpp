@@ -211,7 +211,6 @@ Row row_of(const TickResult& r) {
   return {f.x, f.y, f.z, t.x, t.y, t.z, r.contacts.empty() ? -1.0 : r.min_distance_m};
 }
 
-// Dives would find finer pieces in the whole image.
 TEST(EngineLevels, image_without_its_finest_levels_gives_the_same_bits_within_its_promise) {
   const BakedBody small = pruned();
   const image::Header& header = *small.view.header;

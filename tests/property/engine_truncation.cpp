@@ -7,7 +7,6 @@
 #include <limits>
 #include <vector>
 
-#include "host_bake/models/models.hpp"
 #include "tests/support/answers.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/coarse_bodies.hpp"
@@ -128,52 +127,6 @@ TEST(EngineTruncation, contact_is_felt_for_ever_within_a_few_queries_a_tick) {
     const Felt all = feel(units, kPoses);
     EXPECT_GT(all.touching, 10);
     EXPECT_EQ(all.felt, all.touching) << units << " units";
-  }
-}
-
-// Teeth between teeth, in contact in every tick: hulls of all but the finest pieces overlap there,
-// so that no stand-in is felt on the way down. What slides off is found again within a few ticks.
-// Before bodies without a contact were searched for one, all of these ticks had none with 12 units,
-// and a quarter of them with 16.
-TEST(EngineTruncation, contact_between_teeth_is_found_again_by_the_smallest_budgets) {
-  static const BakedBody a{bake::make_model("jaw_lower", 2000)};
-  static const BakedBody b{bake::make_model("jaw_upper", 2000)};
-  constexpr double kDelta_m = 6e-4;
-  for (const bool exact : {false, true}) {
-    for (const std::uint64_t units : {12u, 16u, 20u, 24u, 32u}) {
-      BakedScene scene({a.view, b.view}, {{0, 1}},
-                       {.delta_m = kDelta_m, .exact = exact, .cluster_radius_m = 1e-3});
-      int none = 0;
-      for (int i = 0; i < 200; ++i) {
-        const Pose poses[2] = {{{3e-4 * std::sin(0.021 * i), 3e-4 * std::cos(0.033 * i), 0},
-                                turn({0.02 * std::sin(0.05 * i), 0.016 * std::cos(0.037 * i), 0})},
-                               {}};
-        const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
-        none += r.contacts.empty() ? 1 : 0;
-      }
-      EXPECT_LE(none, 20) << units << " units, exact " << exact;
-    }
-  }
-}
-
-// Fast to and fro between the same teeth: what slides off one of them comes to another that has
-// been touched before.
-TEST(EngineTruncation, teeth_that_have_touched_are_felt_again_at_once) {
-  static const BakedBody a{bake::make_model("jaw_lower", 2000)};
-  static const BakedBody b{bake::make_model("jaw_upper", 2000)};
-  for (const std::uint64_t units : {20u, 32u, 50u}) {
-    BakedScene scene({a.view, b.view}, {{0, 1}},
-                     {.delta_m = 6e-4, .exact = true, .cluster_radius_m = 1e-3});
-    int none = 0;
-    for (int i = 0; i < 1000; ++i) {
-      const Pose poses[2] = {{{6e-4 * std::sin(0.6 * i), 6e-4 * std::cos(0.35 * i), 0},
-                              turn({0.02 * std::sin(0.5 * i), 0.016 * std::cos(0.37 * i), 0})},
-                             {}};
-      const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
-      none += r.contacts.empty() ? 1 : 0;
-    }
-    RecordProperty("none_" + std::to_string(units), none);
-    EXPECT_LE(none, 60) << units << " units";
   }
 }
 

@@ -66,17 +66,12 @@ class GroundJaws : public testing::TestWithParam<double> {};
 TEST_P(GroundJaws, steadied_force_steps_at_most_half_as_far_again_as_the_exact_one) {
   const double speed_m_per_s = GetParam();
   const Steps exact = largest_steps({.exact = true}, kUnlimited, speed_m_per_s, false);
-  const Settings settings[] = {{.s0 = 0.005},
-                               {.s0 = 0.015},
-                               {.s0 = 0.05},
-                               {.s0 = 0.005, .contact_dive = true},
-                               {.s0 = 0.05, .contact_dive = true},
-                               {.s0 = 1e3, .kappa = 0.1}};
-  for (const Settings& setting : std::span(settings).first(effort(6u, 2u))) {
+  const Settings settings[] = {
+      {.s0 = 0.005}, {.s0 = 0.015}, {.s0 = 0.05}, {.s0 = 1e3, .kappa = 0.1}};
+  for (const Settings& setting : std::span(settings).first(effort(4u, 2u))) {
     for (const std::uint64_t units : {kUnlimited, std::uint64_t{200}, std::uint64_t{60}}) {
       const Steps felt = largest_steps(setting, units, speed_m_per_s, true);
-      SCOPED_TRACE("s0 " + std::to_string(setting.s0) +
-                   (setting.contact_dive ? ", dives, " : ", ") + std::to_string(units) + " units");
+      SCOPED_TRACE("s0 " + std::to_string(setting.s0) + ", " + std::to_string(units) + " units");
       EXPECT_LE(felt.force_N, 1.5 * exact.force_N);
       EXPECT_LE(felt.torque_Nm, 1.5 * exact.torque_Nm);
     }

@@ -161,18 +161,6 @@ TEST(Meter, tail_has_three_quarters_of_the_time_that_is_left_for_searches) {
   EXPECT_TRUE(meter.out_of_time());
 }
 
-TEST(Meter, contacts_found_while_a_share_is_held_back_count_after_its_release) {
-  SetClock clock;
-  Meter meter(clock.budget(), learnt(50'000));
-  clock.now_ns = 0;
-  meter.hold_back(2);
-  EXPECT_LT(end_ns(meter, clock), kDeadline_ns * 6 / 10);
-  meter.expect_contacts(100);
-  EXPECT_LT(end_ns(meter, clock), kDeadline_ns * 6 / 10);
-  meter.release();
-  EXPECT_LT(end_ns(meter, clock), kDeadline_ns - 50'000);
-}
-
 TEST(Meter, one_interrupted_tail_hardly_counts) {
   TailTime tail = learnt(50'000);
   const std::uint64_t before_ns = tail.expected_ns(100);

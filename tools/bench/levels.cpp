@@ -40,50 +40,17 @@ struct Variant {
 
 constexpr Variant kExact[] = {
     {"exact", [](Settings&) {}},
-    {"exact, bounds = paper", [](Settings& s) { s.bounds = Bounds::paper; }},
-    {"exact, no motion bounds", [](Settings& s) { s.motion_bounds = false; }},
-    {"exact, no front tracking", [](Settings& s) { s.front_tracking = false; }},
-    {"exact, no root short cut", [](Settings& s) { s.root_short_cut = false; }},
-    {"exact, none of the four", [](Settings& s) {
-       s.bounds = Bounds::paper;
-       s.motion_bounds = s.front_tracking = s.root_short_cut = false;
-     }}};
+    {"exact, bounds = paper", [](Settings& s) { s.bounds = Bounds::paper; }}};
 
 constexpr Variant kSimplified[] = {
     {"s0 = 0", [](Settings& s) { s.s0 = 0; }},
-    {"s0 = 0, stop on surface",
-     [](Settings& s) {
-       s.s0 = 0;
-       s.stop_on_surface = true;
-     }},
     {"s0 = 0.025", [](Settings&) {}},
-    {"s0 = 0.025, dives", [](Settings& s) { s.contact_dive = true; }},
     {"s0 = 0.2", [](Settings& s) { s.s0 = 0.2; }},
-    {"s0 = 0.2, dives",
-     [](Settings& s) {
-       s.s0 = 0.2;
-       s.contact_dive = true;
-     }},
-    {"s0 = 0.025, stop on surface", [](Settings& s) { s.stop_on_surface = true; }},
     {"s0 = 0.025, bounds = paper", [](Settings& s) { s.bounds = Bounds::paper; }},
-    {"s0 = 0.025, no motion bounds", [](Settings& s) { s.motion_bounds = false; }},
-    {"s0 = 0.025, no front tracking", [](Settings& s) { s.front_tracking = false; }},
     {"s0 = 0.025, no interpolation", [](Settings& s) { s.interpolate = false; }},
-    {"kappa = 0.1",
-     [](Settings& s) {
+    {"kappa = 0.1", [](Settings& s) {
        s.s0 = 1e6;
        s.kappa = 0.1;
-     }},
-    {"kappa = 0.1, dives",
-     [](Settings& s) {
-       s.s0 = 1e6;
-       s.kappa = 0.1;
-       s.contact_dive = true;
-     }},
-    {"kappa = 0.1, stop on surface", [](Settings& s) {
-       s.s0 = 1e6;
-       s.kappa = 0.1;
-       s.stop_on_surface = true;
      }}};
 
 struct Run {
@@ -172,20 +139,9 @@ constexpr Variant kUnderBudget[] = {
        s.exact = true;
        s.order = Order::deviation;
      }},
-    {"exact, order = nearest",
-     [](Settings& s) {
-       s.exact = true;
-       s.order = Order::nearest;
-     }},
-    {"exact, order = ratio",
-     [](Settings& s) {
-       s.exact = true;
-       s.order = Order::ratio;
-     }},
     {"s0 = 0", [](Settings& s) { s.s0 = 0; }},
     {"s0 = 0.025", [](Settings&) {}},
-    {"s0 = 0.025, order = deviation", [](Settings& s) { s.order = Order::deviation; }},
-    {"s0 = 0.025, dives", [](Settings& s) { s.contact_dive = true; }}};
+    {"s0 = 0.025, order = deviation", [](Settings& s) { s.order = Order::deviation; }}};
 
 void by_budget(const Place& at, const Body& a, const Body& b, const std::vector<Pose>& poses) {
   const Run truth = run(a, b, {.delta_m = at.delta_m, .exact = true}, poses, Budget{}.units);

@@ -46,13 +46,11 @@ struct Setting {
 const std::vector<std::uint64_t> kOfLevels = {kUnlimited, 200, 60};
 const std::vector<std::uint64_t> kOfRegions = {2500, 1000, 500, 200};
 
-const std::vector<Setting> kSettings = {
-    {"s0 = 0.005", {.s0 = 0.005}, kOfLevels},
-    {"s0 = 0.015", {.s0 = 0.015}, kOfLevels},
-    {"s0 = 0.05", {.s0 = 0.05}, kOfLevels},
-    {"kappa = 0.1", {.s0 = 1e3, .kappa = 0.1}, kOfLevels},
-    {"s0 = 0.05, dives", {.s0 = 0.05, .contact_dive = true}, kOfLevels},
-    {"regions", {.engine = EngineKind::regions}, kOfRegions}};
+const std::vector<Setting> kSettings = {{"s0 = 0.005", {.s0 = 0.005}, kOfLevels},
+                                        {"s0 = 0.015", {.s0 = 0.015}, kOfLevels},
+                                        {"s0 = 0.05", {.s0 = 0.05}, kOfLevels},
+                                        {"kappa = 0.1", {.s0 = 1e3, .kappa = 0.1}, kOfLevels},
+                                        {"regions", {.engine = EngineKind::regions}, kOfRegions}};
 
 struct Scene {
   const char* name;

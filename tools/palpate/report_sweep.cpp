@@ -74,8 +74,6 @@ std::string words_of(const SettingRow& row, bool levels, bool exact) {
   if (levels) {
     if (!row.at("bounds").is_null() && row.text("bounds") == "paper") add("paper's bounds");
     if (!row.at("interpolate").is_null() && !row.flag("interpolate")) add("no interpolation");
-    const bool says = row.has("contact_dive") && !row.at("contact_dive").is_null();
-    if (says && row.flag("contact_dive")) add("dives");
   }
   add_number("delta_m", "delta", 1e3, " mm");
   return out;

@@ -28,7 +28,7 @@ constexpr double kSharesOfBudget[] = {0.5, 0.75, 0.9};
 struct SweepArguments {
   std::string scene, poses, folder;
   std::vector<std::string> engines = {"levels", "regions"}, bounds = {"tight"};
-  std::vector<bool> interpolate, contact_dive;
+  std::vector<bool> interpolate;
   std::vector<double> s0 = {0.005, 0.01, 0.025, 0.05}, kappa, force_tolerance_N, budget_us, delta_m;
   Observer observer;
   SweepRuns runs;
@@ -50,7 +50,6 @@ SweepAxes axes_of(const SweepArguments& a, const config::Scene& scene) {
   axes.kappa = a.kappa.empty() ? std::vector{scene.kappa.value_or(kNoLimit)} : a.kappa;
   axes.delta_m = a.delta_m.empty() ? std::vector{scene.settings.delta_m} : a.delta_m;
   axes.interpolate = a.interpolate.empty() ? std::vector<bool>{true} : a.interpolate;
-  axes.contact_dive = a.contact_dive.empty() ? std::vector<bool>{false} : a.contact_dive;
   axes.force_tolerance_N = a.force_tolerance_N;
   for (const double share : kToleranceShares) {
     if (!a.force_tolerance_N.empty()) break;
@@ -184,10 +183,6 @@ void add_axes(CLI::App& command, SweepArguments& a) {
       ->delimiter(',')
       ->check(number_or_inf(0, 1e9));
   command.add_option("--interpolate", a.interpolate, "true, false; default: true")->delimiter(',');
-  command
-      .add_option("--contact-dive", a.contact_dive,
-                  "false (contacts as in the paper), true; default: false")
-      ->delimiter(',');
   command.add_option("--bounds", a.bounds, "tight, paper")
       ->delimiter(',')
       ->check(CLI::IsMember({"tight", "paper"}))

@@ -48,14 +48,14 @@ std::string name_of(const SweepSetting& s) {
   if (s.exact) return engine + ", exact" + (s.bounds == Bounds::paper ? ", paper's" : "");
   if (s.engine == EngineKind::regions)
     return engine + ", " + short_number(s.force_tolerance_N) + " N";
-  return engine + ", s0 " + short_number(100 * s.s0) + " %" + (s.contact_dive ? ", dives" : "");
+  return engine + ", s0 " + short_number(100 * s.s0) + " %";
 }
 
 /// What the paper's figures show.
 bool is_profile(const SweepSetting& s, const SweepSetting& first) {
   if (s.delta_m != first.delta_m || std::isfinite(s.budget_us)) return false;
   return s.exact || s.engine == EngineKind::regions ||
-         (std::isinf(s.kappa) && s.interpolate && !s.contact_dive && s.bounds == Bounds::tight);
+         (std::isinf(s.kappa) && s.interpolate && s.bounds == Bounds::tight);
 }
 
 Series line(const SweepSetting& setting, std::span<const TickRow> ticks,

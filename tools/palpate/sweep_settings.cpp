@@ -35,7 +35,6 @@ void add_levels(std::vector<SweepSetting>& out, const SweepAxes& axes, double de
   cross(all, axes.s0, &SweepSetting::s0);
   cross(all, axes.kappa, &SweepSetting::kappa);
   cross(all, axes.interpolate, &SweepSetting::interpolate);
-  cross(all, axes.contact_dive, &SweepSetting::contact_dive);
   cross(all, axes.budget_us, &SweepSetting::budget_us);
   for (const SweepSetting& setting : all) add(out, setting);
 }
@@ -81,7 +80,6 @@ std::string id_of(const SweepSetting& s) {
     id += "-s0_" + text(s.s0);
     if (std::isfinite(s.kappa)) id += "-kappa_" + text(s.kappa);
     if (!s.interpolate) id += "-not_interpolated";
-    if (s.contact_dive) id += "-dives";
   }
   if (!s.exact && !levels) id += "-tolerance_" + text(s.force_tolerance_N);
   if (levels && s.bounds == Bounds::paper) id += "-paper_bounds";
@@ -100,7 +98,6 @@ config::Scene with_setting(const config::Scene& scene, const SweepSetting& s) {
   out.settings.s0 = s.s0;
   out.settings.force_tolerance_N = s.force_tolerance_N;
   out.settings.interpolate = s.interpolate;
-  out.settings.contact_dive = s.contact_dive;
   out.settings.bounds = s.bounds;
   out.settings.delta_m = s.delta_m;
   out.kappa.reset();

@@ -21,7 +21,6 @@ struct SweepSetting {
   double force_tolerance_N = 0;   ///< regions, not exact
   double budget_us = kNoLimit;    ///< infinity: none; exact: none
   bool interpolate = true;        ///< levels
-  bool contact_dive = false;      ///< levels, not exact
   Bounds bounds = Bounds::tight;  ///< levels
   double delta_m = 0;
 
@@ -32,7 +31,7 @@ struct SweepSetting {
 struct SweepAxes {
   std::vector<EngineKind> engines;
   std::vector<double> s0, kappa, force_tolerance_N, budget_us, delta_m;
-  std::vector<bool> interpolate, contact_dive;
+  std::vector<bool> interpolate;
   std::vector<Bounds> bounds;
 };
 

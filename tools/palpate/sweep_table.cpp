@@ -82,7 +82,6 @@ void put_setting(const SweepSetting& s, Json& out) {
   out["force_tolerance_N"] = where(!levels && !s.exact, s.force_tolerance_N);
   out["budget_us"] = number(s.budget_us);
   out["interpolate"] = where(levels, s.interpolate);
-  out["contact_dive"] = where(levels && !s.exact, s.contact_dive);
   out["bounds"] = where(levels, s.bounds == Bounds::paper ? "paper" : "tight");
   out["delta_m"] = s.delta_m;
 }
@@ -136,7 +135,6 @@ SweepSetting setting_of(const Json& row) {
   take("force_tolerance_N", s.force_tolerance_N);
   take("budget_us", s.budget_us);
   take("interpolate", s.interpolate);
-  if (row.contains("contact_dive")) take("contact_dive", s.contact_dive);
   take("delta_m", s.delta_m);
   return s;
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts that do not depend on the level: dives against exact queries.
+// Answers of a budget that ends a query, and of images without their finest levels.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -22,9 +21,7 @@ Pose motion(int i) {
           turn({0.005 * u, 0.002 * u, 0})};
 }
 
-Settings with(double s0, bool dive) {
-  return {.delta_m = kDelta, .s0 = s0, .contact_dive = dive, .cluster_radius_m = 0.1};
-}
+Settings simplified(double s0) { return {.delta_m = kDelta, .s0 = s0, .cluster_radius_m = 0.1}; }
 
 Settings exact() { return {.delta_m = kDelta, .exact = true, .cluster_radius_m = 0.1}; }
 
@@ -50,36 +47,7 @@ std::vector<Answer> run(const ImageView& a, const Settings& settings,
   return answers;
 }
 
-double error(const std::vector<Answer>& answers, const std::vector<Answer>& truth) {
-  double sum = 0;
-  for (std::size_t i = 0; i < truth.size(); ++i)
-    sum += squared_norm(answers[i].force_N - truth[i].force_N);
-  return std::sqrt(sum / static_cast<double>(truth.size()));
-}
-
-TEST(EngineDive, force_comes_nearer_to_the_exact_one) {
-  const std::vector<Answer> truth = run(bodies().a.view, exact());
-  for (const double s0 : {0.05, 0.5}) {
-    const double paper = error(run(bodies().a.view, with(s0, false)), truth);
-    const double dived = error(run(bodies().a.view, with(s0, true)), truth);
-    EXPECT_LT(dived, 0.5 * paper) << s0;
-  }
-}
-
-TEST(EngineDive, least_distance_is_found_to_a_tenth_of_delta_whatever_is_left_out) {
-  constexpr double kLoose_m = 0.1 * kDelta + 1e-6;
-  const std::vector<Answer> truth = run(bodies().a.view, exact());
-  for (const double s0 : {0.01, 0.05, 0.5}) {
-    const std::vector<Answer> dived = run(bodies().a.view, with(s0, true));
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-      EXPECT_GE(dived[i].least_m, truth[i].least_m - 1e-6) << s0 << ", tick " << i;
-      EXPECT_LE(dived[i].least_m, truth[i].least_m + kLoose_m) << s0 << ", tick " << i;
-      EXPECT_LE(std::abs(dived[i].least_m - truth[i].least_m), dived[i].bound_m + 1e-6);
-    }
-  }
-}
-
-TEST(EngineDive, certificate_holds_in_images_without_their_finest_levels) {
+TEST(EngineCutShort, certificate_holds_in_images_without_their_finest_levels) {
   bake::BakeOptions options = coarse();
   options.max_bytes = static_cast<std::size_t>(bodies().a.view.header->total_bytes / 2);
   const BakedBody small(bumpy_ball(24, 32, 1), options);
@@ -87,13 +55,13 @@ TEST(EngineDive, certificate_holds_in_images_without_their_finest_levels) {
   const auto s0 = static_cast<double>(small.view.header->s0_min);
   const std::vector<Answer> truth = run(bodies().a.view, exact());
   for (const std::uint64_t units : {std::uint64_t{30}, std::uint64_t{300}, kUnlimited}) {
-    const std::vector<Answer> dived = run(small.view, with(s0, true), units);
+    const std::vector<Answer> found = run(small.view, simplified(s0), units);
     for (std::size_t i = 0; i < truth.size(); ++i)
-      EXPECT_LE(std::abs(dived[i].least_m - truth[i].least_m), dived[i].bound_m + 1e-6) << i;
+      EXPECT_LE(std::abs(found[i].least_m - truth[i].least_m), found[i].bound_m + 1e-6) << i;
   }
 }
 
-TEST(EngineDive, exact_query_that_ends_in_time_is_not_changed) {
+TEST(EngineCutShort, exact_query_that_ends_in_time_is_not_changed) {
   const std::vector<Answer> limited = run(bodies().a.view, exact(), 1'000'000);
   const std::vector<Answer> unlimited = run(bodies().a.view, exact());
   for (std::size_t i = 0; i < unlimited.size(); ++i) {
@@ -103,7 +71,7 @@ TEST(EngineDive, exact_query_that_ends_in_time_is_not_changed) {
   }
 }
 
-TEST(EngineDive, exact_query_cut_short_loses_no_contact) {
+TEST(EngineCutShort, exact_query_cut_short_loses_no_contact) {
   constexpr std::uint64_t kUnits = 100;
   const std::vector<Answer> truth = run(bodies().a.view, exact());
   const std::vector<Answer> cut = run(bodies().a.view, exact(), kUnits);
