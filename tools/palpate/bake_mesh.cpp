@@ -6,6 +6,7 @@ namespace palpate::cli {
 Baked bake_mesh(bake::ReadMesh read, const std::string& file, const BakeRules& rules,
                 bake::BakeOptions how, const bake::Progress& progress) {
   Baked out;
+  out.welded = read.welded;
   std::string checked = file;
   if (rules.repair) {
     progress("repair", 0);

@@ -13,6 +13,7 @@ namespace palpate::cli {
 
 struct Baked {
   std::vector<std::byte> bytes;
+  bake::Welded welded;               ///< of the mesh as it was read
   std::vector<std::string> repairs;  ///< what was done, a line each
   bake::BakeReport report;
 };

@@ -12,8 +12,6 @@
 
 namespace palpate::realtime {
 
-/// Of Palpate's sources: udev rule, limits and boot service at once.
-inline constexpr const char* kSetUp = "sudo tools/setup/host";
 /// Of the loop, where nothing else is asked for.
 inline constexpr int kLoopPriority = 80;
 

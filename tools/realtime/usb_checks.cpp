@@ -76,11 +76,11 @@ std::string sleep_of(const fs::path& device) {
          " s (power/control is " + (control.empty() ? "unknown" : control) + ")";
 }
 
-HostCheck usb_autosuspend(const fs::path& root) {
-  const auto check = [](bool ok, const std::string& found) {
+HostCheck usb_autosuspend(const fs::path& root, const std::string& set_up) {
+  const auto check = [&](bool ok, const std::string& found) {
     return make_check("usb_autosuspend", ok, found,
                       "off for haptic devices: one that sleeps wakes up too late",
-                      "sudo tools/setup/host, then plug the device in again");
+                      set_up + ", then plug the device in again");
   };
   std::string awake, asleep;
   std::error_code unreadable;
@@ -190,17 +190,17 @@ HostCheck usb_interrupts(const fs::path& root) {
                     "of the USB controller, elsewhere than on the loop's processor", mend);
 }
 
-HostCheck udev_rule(const fs::path& root) {
+HostCheck udev_rule(const fs::path& root, const std::string& set_up) {
   const bool ok = rule_installed(root);
   return make_check("udev_rule", ok, ok ? "installed" : "not installed",
-                    "70-palpate.rules, so that haptic devices may be used without root", kSetUp);
+                    "70-palpate.rules, so that haptic devices may be used without root", set_up);
 }
 
 }  // namespace
 
-std::vector<HostCheck> usb_checks(const fs::path& root) {
-  return {usb_core(root), usb_threads(root), usb_interrupts(root), usb_autosuspend(root),
-          udev_rule(root)};
+std::vector<HostCheck> usb_checks(const fs::path& root, const std::string& set_up) {
+  return {usb_core(root), usb_threads(root), usb_interrupts(root), usb_autosuspend(root, set_up),
+          udev_rule(root, set_up)};
 }
 
 }  // namespace palpate::realtime
