@@ -2,6 +2,7 @@
 palpate_test(meter SOURCES unit/meter.cpp LIBS palpate_rt)
 palpate_test(test_tree SOURCES unit/test_tree.cpp LIBS palpate_rt)
 palpate_test(support_area SOURCES unit/support_area.cpp LIBS palpate_rt)
+palpate_test(force_least_push SOURCES unit/force_least_push.cpp LIBS palpate_rt)
 palpate_test(force_penalty SOURCES unit/force_penalty.cpp LIBS palpate_rt)
 palpate_test(force_friction SOURCES unit/force_friction.cpp LIBS palpate_rt)
 palpate_test(force_linear_contact SOURCES unit/force_linear_contact.cpp LIBS palpate_rt)

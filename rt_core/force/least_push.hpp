@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// The force of a set of contacts: the least push that satisfies all of them (docs/CONTACT.md).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "rt_core/geometry/vec3.hpp"
+
+namespace palpate::force {
+
+/// A contact as the least push sees it: a direction in which the tool is pushed, and how far.
+struct PushConstraint {
+  Vec3d normal{};       ///< unit
+  double strength = 0;  ///< any length unit; may be negative
+};
+
+/// A vector v and a symmetric matrix S, the squeeze. The push in direction n is n.v + n.S n.
+struct Push {
+  Vec3d vector{};
+  Vec3d squeeze_diagonal{};  ///< S_xx, S_yy, S_zz
+  Vec3d squeeze_mixed{};     ///< S_xy, S_yz, S_zx
+
+  [[nodiscard]] double along(Vec3d n) const noexcept { return dot(n, vector) + squeeze_along(n); }
+  /// n.S n
+  [[nodiscard]] double squeeze_along(Vec3d n) const noexcept {
+    const Vec3d square{n.x * n.x, n.y * n.y, n.z * n.z};
+    const Vec3d mixed{n.x * n.y, n.y * n.z, n.z * n.x};
+    return dot(square, squeeze_diagonal) + 2 * dot(mixed, squeeze_mixed);
+  }
+  [[nodiscard]] double trace() const noexcept {
+    return squeeze_diagonal.x + squeeze_diagonal.y + squeeze_diagonal.z;
+  }
+};
+
+/// The push has nine components, so no more contacts than that carry it.
+inline constexpr std::uint32_t kMostCarrying = 9;
+
+/// A contact whose constraint holds with equality.
+struct Carrying {
+  std::uint32_t index = 0;  ///< into the constraints
+  double multiplier = 0;    ///< lambda > 0: Push::vector is the sum of multiplier * normal
+};
+
+enum class PushStatus : std::uint8_t {
+  solved,
+  step_limit,  ///< some constraint is still violated, by PushResult::violation
+};
+
+struct PushResult {
+  Push push;
+  Carrying carrying[kMostCarrying];
+  std::uint32_t carrying_count = 0;
+  double violation = 0;  ///< largest strength - push.along(normal), >= 0
+  PushStatus status = PushStatus::solved;
+};
+
+/// Minimises |v|^2 / 2 + |S|_F^2 / 2 subject to n_i.v + n_i.S n_i >= strength_i for all i.
+///
+/// Dual active set: the most violated constraint enters, constraints whose multiplier would become
+/// negative leave (Lawson and Hanson 1974, ch. 23; Goldfarb and Idnani 1983). The Gram matrix of
+/// two constraints is c + c^2, c the cosine between their normals. The answer is unique; what it is
+/// started from changes rounding only.
+///
+/// @param constraints  parallel, coincident and opposed normals are allowed
+/// @param start        indices to begin with, may be empty: those that carried last time
+/// Rounding: constraints hold to 1e-10 of the largest strength.
+/// Cost: at most kPushSteps passes over the constraints; no memory, bounded stack.
+inline constexpr std::uint32_t kPushSteps = 100;
+[[nodiscard]] PushResult least_push(std::span<const PushConstraint> constraints,
+                                    std::span<const std::uint32_t> start = {}) noexcept;
+
+/// How far the vector of a push may be from that of other constraints: of which some are stronger
+/// than those it was found with by at most `missing`, and none weaker by more than `excess`. With S
+/// the squeeze, S + missing I satisfies the stronger ones, and a projection on a smaller convex set
+/// is no nearer to the origin. O(1)
+[[nodiscard]] double push_error(const Push& push, double missing, double excess) noexcept;
+
+}  // namespace palpate::force
