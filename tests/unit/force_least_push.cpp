@@ -118,5 +118,23 @@ TEST(LeastPush, changes_by_no_more_than_twice_the_motion) {
   }
 }
 
+/// What is left out may change the push by no more than is said.
+TEST(LeastPush, error_of_a_part_of_the_contacts_is_bounded) {
+  std::mt19937 rng(11);
+  std::uniform_real_distribution<double> strength(0, 1);
+  for (int round = 0; round < 200; ++round) {
+    std::vector<PushConstraint> all(40);
+    for (PushConstraint& c : all) c = {random_unit(rng), strength(rng)};
+    const PushResult whole = least_push(all);
+    const PushResult part = least_push(std::span(all).first(10));
+    double missing = 0;
+    for (const PushConstraint& c : all) {
+      missing = std::max(missing, c.strength - part.push.along(c.normal));
+    }
+    EXPECT_LE(norm(whole.push.vector - part.push.vector),
+              force::push_error(part.push, missing, 0) + 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace palpate::test
