@@ -177,10 +177,9 @@ PushResult least_push(std::span<const PushConstraint> constraints,
   return out;
 }
 
-double push_error(const Push& push, double missing, double excess) noexcept {
+double push_error(const Push& push, double missing) noexcept {
   const double trace = push.trace() > 0 ? push.trace() : 0;
-  const auto part = [trace](double by) { return sqrt_of(2 * by * trace + 3 * by * by); };
-  return part(missing) + part(excess);
+  return sqrt_of(2 * missing * trace + 3 * missing * missing);
 }
 
 }  // namespace palpate::force

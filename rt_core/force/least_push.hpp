@@ -55,6 +55,9 @@ struct PushResult {
   PushStatus status = PushStatus::solved;
 };
 
+/// Constraints that enter in one solution, at most.
+inline constexpr std::uint32_t kPushSteps = 100;
+
 /// Minimises |v|^2 / 2 + |S|_F^2 / 2 subject to n_i.v + n_i.S n_i >= strength_i for all i.
 ///
 /// Dual active set: the most violated constraint enters, constraints whose multiplier would become
@@ -66,14 +69,12 @@ struct PushResult {
 /// @param start        indices to begin with, may be empty: those that carried last time
 /// Rounding: constraints hold to 1e-10 of the largest strength.
 /// Cost: at most kPushSteps passes over the constraints; no memory, bounded stack.
-inline constexpr std::uint32_t kPushSteps = 100;
 [[nodiscard]] PushResult least_push(std::span<const PushConstraint> constraints,
                                     std::span<const std::uint32_t> start = {}) noexcept;
 
-/// How far the vector of a push may be from that of other constraints: of which some are stronger
-/// than those it was found with by at most `missing`, and none weaker by more than `excess`. With S
-/// the squeeze, S + missing I satisfies the stronger ones, and a projection on a smaller convex set
-/// is no nearer to the origin. O(1)
-[[nodiscard]] double push_error(const Push& push, double missing, double excess) noexcept;
+/// How far the vector of a push may be from that of more or stronger constraints, which it violates
+/// by at most `missing` >= 0: with S the squeeze, S + missing I satisfies them, and the projection
+/// on the smaller convex set is no nearer to the origin. O(1)
+[[nodiscard]] double push_error(const Push& push, double missing) noexcept;
 
 }  // namespace palpate::force
