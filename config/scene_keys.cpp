@@ -14,6 +14,7 @@ constexpr double kMost = 1e18;
 constexpr std::string_view kEngines[] = {"levels", "regions"};
 constexpr std::string_view kBounds[] = {"tight", "paper"};
 constexpr std::string_view kOrders[] = {"deviation", "force"};
+constexpr std::string_view kForceLaws[] = {"penalty", "least_push"};
 constexpr std::string_view kCouplings[] = {"direct", "virtual"};
 constexpr std::string_view kRoles[] = {"tool", "moved", "fixed"};
 
@@ -63,6 +64,13 @@ constexpr Key<Scene> kEngineKeys[] = {
 };
 
 constexpr Key<Scene> kForceKeys[] = {
+    {"law", "",
+     Choice<Scene>{
+         kForceLaws,
+         [](Scene& s, std::size_t i) { s.settings.force_law = static_cast<ForceLaw>(i); },
+         [](const Scene& s) { return static_cast<std::size_t>(s.settings.force_law); }},
+     "`penalty`: a spring for each contact; `least_push` (`regions`): the smallest push that every "
+     "contact asks for, right in overlap too"},
     {"stiffness_N_per_m", "N/m",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.stiffness_N_per_m; }, 0, kMost},
      "of the penalty force in any one direction, however many contacts push that way"},

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "rt_core/base/meter.hpp"
+#include "rt_core/force/constraints.hpp"
 #include "rt_core/force/penalty.hpp"
 #include "rt_core/palpate_rt.hpp"
 
@@ -80,9 +81,10 @@ Certificate certify(const QueryResult& found, double upper_m, double delta_m,
   return c;
 }
 
-/// What a tick is made of, whichever engine found it.
+/// What a query says of its answer, whichever engine found it.
 struct Found {
   std::uint32_t contacts = 0;
+  std::uint32_t clusters = 0;
   std::uint64_t tail_contacts = 0;  ///< how many take as long
   double min_distance_m = 0;
   std::uint64_t front_nodes = 0;
@@ -125,6 +127,100 @@ Found find_by_regions(Engine& engine, Meter& meter) noexcept {
   return out;
 }
 
+/// Contacts beyond delta shape the push but are not reported; nor, where all minima are, those that
+/// carry nothing.
+std::uint32_t keep_reported(std::span<Contact> contacts, const Settings& settings) noexcept {
+  std::uint32_t kept = 0;
+  for (const Contact& c : contacts) {
+    const bool near = c.distance_m < 0 || norm(c.point_a_m - c.point_b_m) < settings.delta_m;
+    if (near && (!settings.exact || c.weight > 0)) contacts[kept++] = c;
+  }
+  return kept;
+}
+
+/// How far the push may be off; 0: not at all.
+double tolerated_push_m(const Settings& s) noexcept {
+  const double twice_k = 2 * s.stiffness_N_per_m;
+  return s.exact || !(twice_k > 0) ? 0 : s.force_tolerance_N / twice_k;
+}
+
+/// What each contact carries of the force.
+void set_weights(std::span<Contact> contacts, const force::PushResult& push,
+                 double delta_m) noexcept {
+  for (Contact& c : contacts) c.weight = 0;
+  for (std::uint32_t i = 0; i < push.carrying_count; ++i) {
+    Contact& c = contacts[push.carrying[i].index];
+    const double depth_m = delta_m - c.distance_m;
+    if (depth_m > 0) c.weight = 2 * push.carrying[i].multiplier / depth_m;
+  }
+}
+
+/// The minima of all regions, after the contacts that were found for the force.
+void add_minima(Engine& engine, Meter& meter, std::uint32_t contacts, Found& found) noexcept {
+  engine.regions.contacts = engine.contacts.subspan(contacts);
+  const Certificate of_force = found.certificate;
+  const double deepest_m = found.min_distance_m;
+  found = find_by_regions(engine, meter);
+  engine.regions.contacts = engine.contacts;
+  found.contacts += contacts;
+  found.min_distance_m = deepest_m < found.min_distance_m ? deepest_m : found.min_distance_m;
+  found.certificate.force_bound_N = of_force.force_bound_N;
+  found.certificate.truncated_by_time |= of_force.truncated_by_time;
+  found.certificate.truncated_by_units |= of_force.truncated_by_units;
+  found.certificate.truncated_by_memory |= of_force.truncated_by_memory;
+}
+
+/// Searches for the contacts that can change the least push.
+Found find_for_push(Engine& engine, Meter& meter, force::PushWrench& push) noexcept {
+  const Settings& s = engine.settings;
+  Pace pace(meter);
+  const regions::ContactSearchResult found =
+      regions::search_contacts(engine.search, {s.delta_m, tolerated_push_m(s)}, pace);
+  engine.tally.lap(Stage::refine, meter);
+  meter.begin_tail();
+  const std::span<Contact> contacts = engine.contacts.first(found.contacts);
+  const std::span<force::PushPoint> points = engine.push_points.first(found.contacts);
+  const Pose& tool = engine.poses[engine.tool];
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    points[i].arm_m = contacts[i].centre_m - tool.position_m;
+  }
+  push = force::push_wrench(engine.constraints.first(found.contacts), found.push, points, tool, s,
+                            engine.force.places);
+  set_weights(contacts, found.push, s.delta_m);
+  const double deviation_m = least_error_m(engine.states);
+  Found out;
+  out.contacts = keep_reported(contacts, s);
+  out.clusters = found.push.carrying_count;
+  out.tail_contacts = found.contacts;
+  out.min_distance_m = found.min_distance_m;
+  out.front_nodes = found.near_regions;
+  out.certificate.force_bound_N =
+      2 * s.stiffness_N_per_m * (regions::push_error_m(found) + deviation_m);
+  out.certificate.truncated_by_memory = found.contacts_full;
+  out.certificate.iteration_cap_met = found.push.status != force::PushStatus::solved;
+  if (!found.complete && !found.contacts_full) {
+    out.certificate.truncated_by_units = meter.out_of_units();
+    out.certificate.truncated_by_time = !out.certificate.truncated_by_units;
+  }
+  const std::uint32_t for_force = out.contacts;
+  if (s.exact) {
+    add_minima(engine, meter, for_force, out);
+  } else {
+    const double nearest_m =
+        out.contacts > 0 && out.min_distance_m < s.delta_m ? out.min_distance_m : s.delta_m;
+    const double below_m =
+        found.unresolved_lower_m < nearest_m ? nearest_m - found.unresolved_lower_m : 0;
+    out.certificate.error_bound_m = below_m + deviation_m;
+    if (out.contacts > 0) {
+      out.certificate.contact = ContactStatus::found;
+    } else if (!(found.unresolved_lower_m < s.delta_m)) {
+      out.certificate.contact = ContactStatus::ruled_out;
+    }
+  }
+  out.queries = meter.used();
+  return out;
+}
+
 }  // namespace
 
 Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
@@ -140,23 +236,32 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
   }
   Meter meter(budget, engine.tail);
   engine.tally.begin_tick();
-  const Found found = settings.engine == EngineKind::levels ? find_by_levels(engine, meter)
-                                                            : find_by_regions(engine, meter);
-
-  const std::span<Contact> contacts = engine.contacts.first(found.contacts);
-  out.contacts = contacts;
-  const force::Penalty penalty = force::penalty(contacts, engine.pairs, engine.tool,
-                                                engine.poses[engine.tool], settings, engine.force);
-  out.wrench = force::limited(penalty.wrench, settings);
-  out.stiffness = penalty.stiffness;
-  out.clusters = static_cast<std::uint32_t>(2 * penalty.directions + 1) / 2;  // rounded
+  Found found;
+  if (settings.force_law == ForceLaw::least_push) {
+    force::PushWrench push;
+    found = find_for_push(engine, meter, push);
+    out.wrench = force::limited(push.wrench, settings);
+    out.stiffness = push.stiffness;
+    out.clusters = found.clusters;
+    found.certificate.truncated_by_memory |= push.places_full;
+  } else {
+    found = settings.engine == EngineKind::levels ? find_by_levels(engine, meter)
+                                                  : find_by_regions(engine, meter);
+    const force::Penalty penalty =
+        force::penalty(engine.contacts.first(found.contacts), engine.pairs, engine.tool,
+                       engine.poses[engine.tool], settings, engine.force);
+    out.wrench = force::limited(penalty.wrench, settings);
+    out.stiffness = penalty.stiffness;
+    out.clusters = static_cast<std::uint32_t>(2 * penalty.directions + 1) / 2;  // rounded
+    found.certificate.truncated_by_memory |= penalty.places_full;
+  }
+  out.contacts = engine.contacts.first(found.contacts);
   out.min_distance_m =
       found.contacts > 0 ? found.min_distance_m : std::numeric_limits<double>::quiet_NaN();
   out.front_nodes = found.front_nodes;
   out.queries = found.queries;
   out.certificate = found.certificate;
   out.certificate.units_used = meter.used();
-  out.certificate.truncated_by_memory |= penalty.places_full;
   const std::uint64_t tail_ns = meter.tail_ns();
   engine.tail.learn(tail_ns, found.tail_contacts);
   engine.tally.lap(Stage::force, meter.refined_ns() + tail_ns);

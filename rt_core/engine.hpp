@@ -7,8 +7,10 @@
 
 #include "rt_core/base/tally.hpp"
 #include "rt_core/force/penalty.hpp"
+#include "rt_core/force/wrench.hpp"
 #include "rt_core/levels/levels_engine.hpp"
 #include "rt_core/palpate_rt.hpp"
+#include "rt_core/regions/contact_search.hpp"
 #include "rt_core/regions/regions_engine.hpp"
 
 namespace palpate {
@@ -24,7 +26,10 @@ class Engine {
   std::span<levels::PairState> states;  // [pairs]
   levels::QueryMemory levels;           // of the engine's kind; the other is empty
   regions::QueryMemory regions;
+  regions::ContactMemory search;  // of the regions engine with the least push
   std::span<Contact> contacts;
+  std::span<force::PushConstraint> constraints;  // [contacts]
+  std::span<force::PushPoint> push_points;       // [contacts]
   force::Workspace force;
   TailTime tail;                      // of the ticks so far
   [[no_unique_address]] Tally tally;  // last: its size is a switch of the build

@@ -55,6 +55,12 @@ enum class Order : std::uint8_t {
               ///< a distance up to the contact known there, or to delta
 };
 
+/// How contacts become a force.
+enum class ForceLaw : std::uint8_t {
+  penalty,     ///< a spring for each contact, shared where contacts push in nearly one direction
+  least_push,  ///< the smallest push that every contact asks for (docs/CONTACT.md); regions engine
+};
+
 /// How contacts are found and turned into forces.
 struct Settings {
   EngineKind engine = EngineKind::levels;  ///< fixed when the engine is made
@@ -70,6 +76,8 @@ struct Settings {
   /// Without a budget it changes nothing.
   Order order = Order::force;
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
+
+  ForceLaw force_law = ForceLaw::penalty;
 
   /// Regions engine: refinement may end once the certified error of the force is no more; 0: exact.
   /// Whether two bodies touch is decided all the same, as far as a budget goes.

@@ -16,10 +16,11 @@ bool at_least(double v, double least) noexcept { return v >= least; }  // false 
 bool sound(const Settings& s) noexcept {
   return finite(s.delta_m) && s.delta_m > 0 && finite(s.s0) && at_least(s.s0, 0) &&
          at_least(s.kappa, 0) && s.bounds <= Bounds::paper && s.order <= Order::force &&
-         finite(s.stiffness_N_per_m) && at_least(s.stiffness_N_per_m, 0) &&
-         finite(s.cluster_radius_m) && at_least(s.cluster_radius_m, 0) &&
-         finite(s.force_tolerance_N) && at_least(s.force_tolerance_N, 0) &&
-         at_least(s.max_force_N, 0) && at_least(s.max_torque_Nm, 0);
+         s.force_law <= ForceLaw::least_push && finite(s.stiffness_N_per_m) &&
+         at_least(s.stiffness_N_per_m, 0) && finite(s.cluster_radius_m) &&
+         at_least(s.cluster_radius_m, 0) && finite(s.force_tolerance_N) &&
+         at_least(s.force_tolerance_N, 0) && at_least(s.max_force_N, 0) &&
+         at_least(s.max_torque_Nm, 0);
 }
 
 bool sound(const Scene& scene, const Limits& limits) noexcept {
@@ -69,6 +70,18 @@ struct Layout {
   std::span<regions::SearchScratch> search;
   std::span<regions::CrossingScratch> crossing;
   std::span<regions::Unfinished> unfinished;
+  // The search for the least push.
+  std::span<force::PushConstraint> constraints;
+  std::span<force::PushPoint> push_points;
+  std::span<regions::SideMemory> sides;
+  std::span<regions::SideView> views;
+  std::span<contact::Scratch> contact_scratch;
+  std::span<regions::RegionBound> region_bounds;
+  std::span<regions::VertexBound> vertex_bounds;
+  std::span<std::uint32_t> edge_ticks;
+  std::span<regions::NearRegion> near;
+  std::span<std::uint32_t> open;
+  std::span<regions::ContactSource> sources;
 };
 
 std::size_t smaller(std::size_t a, std::size_t b) noexcept { return a < b ? a : b; }
@@ -84,23 +97,20 @@ std::size_t regions_of(const Scene& scene) noexcept {
   return all;
 }
 
-/// Of components that are deep inside the other body. Where there is one in each body and one of
-/// them is, nothing else is felt.
-std::size_t leaving_of(const Scene& scene, const BodyPair& pair) noexcept {
-  const auto more_in = [&](std::uint32_t body) -> std::size_t {
-    return scene.bodies[body].header->source_components - 1;
-  };
-  return smaller(regions::kMostContained, more_in(pair.a) + more_in(pair.b));
-}
-
-/// What limits ask for, but a region has one contact at most, and so has what is deep inside.
-std::size_t contacts_for(const Scene& scene, const Limits& limits, EngineKind kind) noexcept {
-  if (kind == EngineKind::levels) return limits.contacts;
-  std::size_t most = 0;
+/// What both sides of all pairs need.
+struct SideCounts {
+  std::size_t regions = 0, vertices = 0, edges = 0;
+};
+SideCounts sides_of(const Scene& scene) noexcept {
+  SideCounts out;
   for (const BodyPair& pair : scene.pairs) {
-    most += regions_of(scene, pair) + leaving_of(scene, pair);
+    for (const std::uint32_t body : {pair.a, pair.b}) {
+      out.regions += scene.bodies[body].regions.size();
+      out.vertices += scene.bodies[body].surface_vertices.size();
+      out.edges += scene.bodies[body].surface_edges.size();
+    }
   }
-  return smaller(limits.contacts, most);
+  return out;
 }
 
 void lay_out_levels(Arena& arena, const Limits& limits, Layout& out) noexcept {
@@ -111,6 +121,21 @@ void lay_out_levels(Arena& arena, const Limits& limits, Layout& out) noexcept {
   out.stopped = arena.array<std::uint32_t>(limits.nodes);
   out.scratch = arena.array<convex::PenetrationScratch>(1);
   out.pressure = arena.array<convex::PressureScratch>(1);
+}
+
+void lay_out_search(Arena& arena, const Scene& scene, const Limits& limits, Layout& out) noexcept {
+  const SideCounts counts = sides_of(scene);
+  out.constraints = arena.array<force::PushConstraint>(limits.contacts);
+  out.push_points = arena.array<force::PushPoint>(limits.contacts);
+  out.sides = arena.array<regions::SideMemory>(2 * scene.pairs.size());
+  out.views = arena.array<regions::SideView>(2 * scene.pairs.size());
+  out.contact_scratch = arena.array<contact::Scratch>(1);
+  out.region_bounds = arena.array<regions::RegionBound>(counts.regions);
+  out.vertex_bounds = arena.array<regions::VertexBound>(counts.vertices);
+  out.edge_ticks = arena.array<std::uint32_t>(counts.edges);
+  out.near = arena.array<regions::NearRegion>(counts.regions);
+  out.open = arena.array<std::uint32_t>(counts.regions);
+  out.sources = arena.array<regions::ContactSource>(limits.contacts);
 }
 
 void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
@@ -141,7 +166,7 @@ Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKin
   out.engine = arena.array<Engine>(1);
   out.states = arena.array<levels::PairState>(scene.pairs.size());
   out.poses = arena.array<Pose>(scene.bodies.size());
-  const std::size_t contacts = contacts_for(scene, limits, kind);
+  const std::size_t contacts = limits.contacts;
   out.contacts = arena.array<Contact>(contacts);
   out.felt = arena.array<force::Felt>(contacts);
   out.ranking = arena.array<force::Ranked>(contacts);
@@ -154,6 +179,7 @@ Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKin
     lay_out_levels(arena, limits, out);
   } else {
     lay_out_regions(arena, scene, out);
+    lay_out_search(arena, scene, limits, out);
   }
   return out;
 }
@@ -162,6 +188,38 @@ Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKin
 void attach(levels::PairState& pair, const Scene& scene, const BodyPair& bodies) noexcept {
   pair.image_a = &scene.bodies[bodies.a];
   pair.image_b = &scene.bodies[bodies.b];
+}
+
+void attach_sides(const Layout& layout, const Scene& scene) noexcept {
+  SideCounts first;
+  for (std::size_t i = 0; i < layout.sides.size(); ++i) {
+    const BodyPair& pair = scene.pairs[i / 2];
+    const ImageView& points = scene.bodies[i % 2 == 0 ? pair.a : pair.b];
+    regions::SideMemory& side = layout.sides[i];
+    side.regions = layout.region_bounds.subspan(first.regions, points.regions.size());
+    side.vertices = layout.vertex_bounds.subspan(first.vertices, points.surface_vertices.size());
+    side.edge_ticks = layout.edge_ticks.subspan(first.edges, points.surface_edges.size());
+    first.regions += points.regions.size();
+    first.vertices += points.surface_vertices.size();
+    first.edges += points.surface_edges.size();
+  }
+}
+
+void attach_search(const Layout& layout, const Scene& scene, Engine& e) noexcept {
+  attach_sides(layout, scene);
+  e.constraints = e.search.constraints = layout.constraints;
+  e.push_points = layout.push_points;
+  e.search.pairs = layout.states;
+  e.search.contacts = layout.contacts;
+  e.search.kernels = &regions::best_kernels();
+  e.search.bodies = scene.pairs;
+  e.search.tool = scene.tool;
+  e.search.sides = layout.sides;
+  e.search.views = layout.views;
+  e.search.scratch = layout.contact_scratch.data();
+  e.search.near = layout.near;
+  e.search.queue = layout.open;
+  e.search.sources = layout.sources;
 }
 
 /// Points the engine to its memory and its scene. Values stay as they are.
@@ -201,6 +259,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.regions.search = layout.search.data();
   e.regions.crossing = layout.crossing.data();
   e.regions.unfinished = layout.unfinished.data();
+  attach_search(layout, scene, e);
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
     attach(layout.states[i], scene, scene.pairs[i]);
   }
@@ -261,8 +320,11 @@ bool all_fine_enough(const Engine& engine, const Settings& settings) noexcept {
   return true;
 }
 
-bool serves(const ImageView& image, EngineKind kind) noexcept {
-  return !image.pieces.empty() && (kind == EngineKind::levels || !image.regions.empty());
+bool serves(const ImageView& image, const Settings& settings) noexcept {
+  if (image.pieces.empty()) return false;
+  if (settings.engine == EngineKind::levels) return settings.force_law == ForceLaw::penalty;
+  return !image.regions.empty() &&
+         (settings.force_law == ForceLaw::penalty || !image.surface_vertices.empty());
 }
 
 /// FNV-1a (Fowler, Noll, Vo) of all that the layout and the meaning of an engine's memory follow
@@ -316,7 +378,7 @@ Status create(const Scene& scene, const Settings& settings, const Limits& limits
               std::span<std::byte> memory, Engine*& out_engine) noexcept {
   if (!sound(scene, limits) || !sound(settings)) return Status::bad_argument;
   for (const ImageView& body : scene.bodies) {
-    if (!serves(body, settings.engine)) return Status::image_missing_section;
+    if (!serves(body, settings)) return Status::image_missing_section;
   }
   const Status room = check_memory(scene, limits, settings.engine, memory);
   if (room != Status::ok) return room;

@@ -302,6 +302,11 @@ std::vector<std::byte> pack(const Hierarchy& tree, const Metrics& metrics,
     image.add(image::SectionId::proximity_bricks, near.bricks);
     image.add(image::SectionId::proximity_cells, near.cells);
     image.add(image::SectionId::region_runs, regions.runs);
+    image.add(image::SectionId::surface_vertices, regions.surface.vertices);
+    image.add(image::SectionId::vertex_normals, regions.surface.normals);
+    image.add(image::SectionId::surface_edges, regions.surface.edges);
+    image.add(image::SectionId::surface_runs, regions.surface.runs);
+    image.add(image::SectionId::triangle_vertices, regions.surface.triangle_vertices);
   }
   return std::move(image).finish();
 }

@@ -42,6 +42,8 @@ class Builder {
     rank_regions();
     fill_triangles();
     find_runs();
+    out_.surface = surface_parts(mesh_, out_.triangles, out_.regions.size());
+    set_normal_cones(out_.triangles, out_.surface.runs);
     return std::move(out_);
   }
 

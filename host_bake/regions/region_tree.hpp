@@ -7,6 +7,7 @@
 
 #include "host_bake/mesh/mesh.hpp"
 #include "host_bake/regions/partition.hpp"
+#include "host_bake/regions/surface_parts.hpp"
 #include "rt_core/image/region_format.hpp"
 
 namespace palpate::bake {
@@ -16,6 +17,7 @@ struct RegionTree {
   std::vector<image::RegionTriangle> triangles;
   std::vector<image::Region> regions;
   std::vector<image::RegionRun> runs;  ///< the longest of each region
+  SurfaceParts surface;
 };
 
 /// Builds the tree: the mesh is divided into regions and groups (partition.hpp), the binary tree is

@@ -19,6 +19,19 @@ constexpr bool within(T value, T low, T high) noexcept {
   return value >= low && value <= high;
 }
 
+inline double squared_length(const float (&v)[3]) noexcept {
+  double sum = 0;
+  for (const float x : v) sum += static_cast<double>(x) * static_cast<double>(x);
+  return sum;
+}
+/// Within what rounding to float leaves.
+inline bool is_unit(const float (&v)[3]) noexcept {
+  return within(squared_length(v), 1 - 1e-6, 1 + 1e-6);
+}
+inline bool is_unit_or_zero(const float (&v)[3]) noexcept {
+  return is_unit(v) || squared_length(v) == 0;
+}
+
 /// Ranges and consistency of the header's own fields. image_bad_header.
 Status check_header(const Header& header) noexcept;
 
@@ -57,5 +70,10 @@ Status check_regions(const ImageView& image) noexcept;
 /// What tells where to look first: all four sections or none, and what they name exists.
 /// image_missing_section, image_bad_section, image_bad_float, image_bad_index.
 Status check_proximity(const ImageView& image) noexcept;
+
+/// What contacts see of the surface: all sections or none; runs tile, indices exist, corners agree
+/// with the triangles', normals are unit. image_missing_section, image_bad_section,
+/// image_bad_index, image_bad_float.
+Status check_surface(const ImageView& image) noexcept;
 
 }  // namespace palpate::image::checks

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The memory image, format version 1.5: what lies where. docs/FORMAT.md specifies it for readers in
+// The memory image, format version 1.6: what lies where. docs/FORMAT.md specifies it for readers in
 // other languages; this header is its C++ form and the only place that knows the layout.
 //
 // Little-endian; fixed-width types; every section starts on a 64-byte boundary; offsets count bytes
@@ -20,12 +20,13 @@ namespace palpate::image {
 
 inline constexpr std::uint8_t kMagic[8] = {0x89, 'P', 'A', 'L', 'P', '\r', '\n', 0x1a};
 inline constexpr std::uint16_t kFormatMajor = 1;        ///< another major number is refused
-inline constexpr std::uint16_t kFormatMinor = 5;        ///< a newer minor number still loads
+inline constexpr std::uint16_t kFormatMinor = 6;        ///< a newer minor number still loads
 inline constexpr std::uint16_t kPatchNormalsSince = 1;  ///< minor version
 inline constexpr std::uint16_t kSourceDeviationSince = 2;
 inline constexpr std::uint16_t kProximitySince = 3;
 inline constexpr std::uint16_t kRanksSince = 4;
 inline constexpr std::uint16_t kComponentsSince = 5;
+inline constexpr std::uint16_t kSurfaceSince = 6;
 inline constexpr std::uint32_t kByteOrderMark = 0x01020304;
 inline constexpr std::size_t kAlignment = 64;
 inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< "no such index"
@@ -86,9 +87,15 @@ enum class SectionId : std::uint32_t {
   proximity_bricks = 12,  ///< u32; x fastest
   proximity_cells = 13,   ///< u32, into region_triangles; kBrickCells a fine brick, x fastest
   region_runs = 14,       ///< RegionRun; of each region
-  // 15 is for later minor versions; it is empty so far.
+  // What contacts see of the surface: all, with those of the regions, or none. A surface may be
+  // without convex edges.
+  surface_vertices = 15,   ///< SurfaceVertex, region by region
+  vertex_normals = 16,     ///< SurfaceNormal; each vertex's own run
+  surface_edges = 17,      ///< u32, 3 * triangle + side; convex edges, region by region
+  surface_runs = 18,       ///< SurfaceRun; of each region
+  triangle_vertices = 19,  ///< TriangleVertices; of each region triangle
 };
-inline constexpr std::size_t kSectionSlots = 16;
+inline constexpr std::size_t kSectionSlots = 20;
 
 enum class HeaderFlag : std::uint32_t {
   repaired = 1u << 0,       ///< the source was repaired before baking
@@ -146,7 +153,7 @@ struct Header {
   Section sections[kSectionSlots];
   std::uint8_t reserved2[40];
 };
-static_assert(sizeof(Header) == 512);
+static_assert(sizeof(Header) == 576);
 static_assert(offsetof(Header, content_sha256) == 32);
 static_assert(offsetof(Header, centre_m) == 96);
 static_assert(offsetof(Header, sections) == 216);

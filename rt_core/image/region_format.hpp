@@ -90,4 +90,52 @@ struct RegionRun {
 };
 static_assert(sizeof(RegionRun) == 8);
 
+/// A vertex of the baked surface: all corners with one position.
+struct SurfaceVertex {
+  float position[3];
+  /// Unit: face normals weighted by their angles here (Baerentzen and Aanaes 2005); 0 where they
+  /// cancel.
+  float pseudonormal[3];
+  std::uint32_t first_normal;  ///< into vertex_normals
+  /// Corners of the spherical convex hull of its faces' normals, counter-clockwise seen from
+  /// outside; 0: they lie in no hemisphere, the hull is the whole sphere.
+  std::uint16_t hull_normals;
+  std::uint16_t concave_normals;  ///< after those: distinct normals of faces beside concave edges
+};
+static_assert(sizeof(SurfaceVertex) == 32);
+
+/// A unit normal.
+struct SurfaceNormal {
+  float xyz[3];
+};
+static_assert(sizeof(SurfaceNormal) == 12);
+
+/// Vertices and edges that belong to a region: vertices to that of their first triangle, edges to
+/// that of the triangle that names them; and the cone of the normals of its faces.
+struct SurfaceRun {
+  std::uint32_t first_vertex;  ///< into surface_vertices
+  std::uint32_t vertices;
+  std::uint32_t first_edge;  ///< into surface_edges
+  std::uint32_t edges;
+  float normal[3];  ///< axis, unit, of a cone that holds them; 0 where none is narrower than a half
+                    ///< space
+  float normal_cos;  ///< cosine of its half angle, rounded down by 1e-6; -1 without an axis
+};
+static_assert(sizeof(SurfaceRun) == 32);
+
+/// Vertices of a region triangle, corner by corner.
+struct TriangleVertices {
+  std::uint32_t corner[3];  ///< into surface_vertices
+};
+static_assert(sizeof(TriangleVertices) == 12);
+
+// Which normals and edges a baker keeps. Faces that are slivers (triangle_normal.hpp) have no
+// normal, and the edges beside them are neither convex nor concave.
+inline constexpr double kEqualNormalCos = 1 - 1e-10;  ///< nearer normals count as one
+inline constexpr double kConvexEdgeAngle = 1e-4;      ///< rad; convex edges turn by more
+inline constexpr double kConcaveEdgeAngle = 1e-4;     ///< rad; concave edges turn by more
+
+/// So that an edge has a 32-bit name.
+inline constexpr std::uint32_t kMaxRegionTriangles = 0xffffffffu / 3;
+
 }  // namespace palpate::image

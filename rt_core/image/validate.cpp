@@ -44,6 +44,11 @@ ImageView view_of(std::span<const std::byte> bytes) noexcept {
   view.proximity_bricks = records<std::uint32_t>(bytes, Id::proximity_bricks);
   view.proximity_cells = records<std::uint32_t>(bytes, Id::proximity_cells);
   view.region_runs = records<image::RegionRun>(bytes, Id::region_runs);
+  view.surface_vertices = records<image::SurfaceVertex>(bytes, Id::surface_vertices);
+  view.vertex_normals = records<image::SurfaceNormal>(bytes, Id::vertex_normals);
+  view.surface_edges = records<std::uint32_t>(bytes, Id::surface_edges);
+  view.surface_runs = records<image::SurfaceRun>(bytes, Id::surface_runs);
+  view.triangle_vertices = records<image::TriangleVertices>(bytes, Id::triangle_vertices);
   return view;
 }
 
@@ -90,7 +95,7 @@ Status validate(std::span<const std::byte> bytes, ImageView& out_view) noexcept 
       image::checks::check_tree,       image::checks::check_indices,
       image::checks::check_vertices,   image::checks::check_level_totals,
       image::checks::check_capacities, image::checks::check_regions,
-      image::checks::check_proximity};
+      image::checks::check_proximity,  image::checks::check_surface};
   const ImageView view = view_of(bytes);
   for (const auto pass : kPasses) {
     if (const Status s = pass(view); s != Status::ok) return s;

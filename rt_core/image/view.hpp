@@ -32,6 +32,11 @@ struct ImageView {
   std::span<const std::uint32_t> proximity_cells;
   std::span<const image::RegionRun> region_runs;
   std::span<const image::Vertex> culling_vertices;
+  std::span<const image::SurfaceVertex> surface_vertices;
+  std::span<const image::SurfaceNormal> vertex_normals;
+  std::span<const std::uint32_t> surface_edges;
+  std::span<const image::SurfaceRun> surface_runs;
+  std::span<const image::TriangleVertices> triangle_vertices;
 };
 
 /// What Header::content_sha256 has to be: the hash of the image with those 32 bytes zero.

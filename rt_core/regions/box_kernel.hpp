@@ -131,5 +131,26 @@ std::uint32_t test_boxes(const Box& box, const Transform& to_node, Vec3f course,
   return near;
 }
 
+/// A point against the boxes of a node.
+std::uint32_t point_boxes(Vec3f point, const image::RegionNode& node, float below,
+                          float (&out_squared)[kBatch]) noexcept {
+  std::uint32_t near = 0;
+  for (int lane = 0; lane < kWidth; lane += kLanes) {
+    const Vectors apart = {point.x - load(node.centre[0] + lane),
+                           point.y - load(node.centre[1] + lane),
+                           point.z - load(node.centre[2] + lane)};
+    Floats squared{};
+    for (int k = 0; k < 3; ++k) {
+      const Floats along = load(node.axes[3 * k] + lane) * apart.x +
+                           load(node.axes[3 * k + 1] + lane) * apart.y +
+                           load(node.axes[3 * k + 2] + lane) * apart.z;
+      squared += gap_squared(along, Floats{}, load(node.half[k] + lane));
+    }
+    store(squared, out_squared + lane);
+    near |= bits(squared < all(below)) << lane;
+  }
+  return near & ((1u << node.children) - 1u);
+}
+
 }  // namespace
 }  // namespace palpate::regions

@@ -144,6 +144,11 @@ struct Kernels {
   void (*find_bricks)(const image::RegionTriangle* const (&from)[kBatch],
                       const std::uint32_t (&numbers)[kBatch], float long2, const Transform& to_grid,
                       const image::ProximityGrid& grid, BrickLanes& out) noexcept;
+
+  /// Squared distances of a point from the boxes of a node, 0 inside, too large by at most 1e-6.
+  /// @return bit i: box i is nearer than the root of `below`
+  std::uint32_t (*point_boxes)(Vec3f point, const image::RegionNode& node, float below,
+                               float (&out_squared)[kBatch]) noexcept;
 };
 
 /// The widest table that this processor and its operating system can run. Asks the processor: not

@@ -11,9 +11,9 @@
 namespace palpate::regions {
 
 const Kernels* kernels_base() noexcept {
-  static constexpr Kernels kTable = {"base",          test_boxes,       triangle_distances,
-                                     triangle_ways,   triangle_courses, separations,
-                                     triangle_bounds, witnesses,        find_bricks};
+  static constexpr Kernels kTable = {
+      "base",      test_boxes,      triangle_distances, triangle_ways, triangle_courses,
+      separations, triangle_bounds, witnesses,          find_bricks,   point_boxes};
   return &kTable;
 }
 

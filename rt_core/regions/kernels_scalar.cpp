@@ -8,9 +8,9 @@
 namespace palpate::regions {
 
 const Kernels* kernels_scalar() noexcept {
-  static constexpr Kernels kTable = {"scalar",        test_boxes,       triangle_distances,
-                                     triangle_ways,   triangle_courses, separations,
-                                     triangle_bounds, witnesses,        find_bricks};
+  static constexpr Kernels kTable = {
+      "scalar",    test_boxes,      triangle_distances, triangle_ways, triangle_courses,
+      separations, triangle_bounds, witnesses,          find_bricks,   point_boxes};
   return &kTable;
 }
 

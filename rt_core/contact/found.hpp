@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contacts of points and edges of one body with the surface of another (docs/CONTACT.md).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "rt_core/base/pace.hpp"
+#include "rt_core/contact/nearby.hpp"
+#include "rt_core/force/least_push.hpp"
+
+namespace palpate::contact {
+
+/// The points of one body, P, and the surface of another, Q, that they may touch. Coordinates are
+/// those of Q, in units of the pair, unless a name says otherwise.
+struct Side {
+  Surface points;    ///< P
+  Target target;     ///< Q
+  Mat3d rotation{};  ///< P to Q
+  Vec3d translation{};
+
+  [[nodiscard]] Vec3d to_target(Vec3d point) const noexcept {
+    return rotation * point + translation;
+  }
+  [[nodiscard]] Vec3d to_points(Vec3d point) const noexcept {
+    return transpose(rotation) * (point - translation);
+  }
+  [[nodiscard]] Vec3d turned_to_target(Vec3d v) const noexcept { return rotation * v; }
+  [[nodiscard]] Vec3d turned_to_points(Vec3d v) const noexcept { return transpose(rotation) * v; }
+};
+
+/// A direction in which P is pushed, and how far it is from there.
+struct FoundContact {
+  Vec3d normal{};              ///< unit, from Q to P
+  double distance = 0;         ///< d, signed: negative in overlap
+  double weight = 0;           ///< w, (0, 1]
+  Vec3d point{};               ///< on P
+  Vec3d foot{};                ///< on Q
+  std::uint32_t triangle = 0;  ///< of Q
+};
+
+/// What one point or edge gives, at most; the heaviest are kept.
+inline constexpr std::uint32_t kMostFound = 64;
+
+class FoundContacts {
+ public:
+  void clear() noexcept { count_ = 0; }
+  /// Of equal normals and distances the heavier one is kept.
+  void add(const FoundContact& contact) noexcept;
+  [[nodiscard]] std::span<const FoundContact> all() const noexcept { return {contacts_, count_}; }
+
+ private:
+  FoundContact contacts_[kMostFound];
+  std::uint32_t count_ = 0;
+};
+
+/// A way out of the target for a point inside it.
+struct WayOut {
+  Vec3d normal{};
+  Vec3d foot{};
+  double length = 0;
+  double strength = 0;  ///< its facing, less the longer it is beside the nearest
+  double facing = 0;    ///< how far both surfaces face along it, (0, 1]
+  std::uint32_t triangle = 0;
+};
+/// Ways out of one point, at most; the strongest are kept.
+inline constexpr std::uint32_t kMostWays = 64;
+
+/// Working memory of one point or edge at a time, and what it has given.
+struct Scratch {
+  FoundContacts found;
+  WayOut ways[kMostWays];
+  force::PushConstraint constraints[kMostWays];
+};
+
+/// All contacts of a vertex of P, in scratch.found.
+/// @param hint   a triangle of Q that may be near it, or kNone
+/// @param delta  contact tolerance, in units of the pair
+/// @return the vertex's signed distance from Q
+/// Cost: two traversals of Q's tree, of which the second meets all triangles within 1.8 delta, or
+/// three depths.
+SignedDistance contacts_of_vertex(const Side& side, Pace& pace, std::uint32_t vertex,
+                                  std::uint32_t hint, double delta, Scratch& scratch) noexcept;
+
+/// All contacts of a convex edge of P with convex edges of Q, in scratch.found.
+/// @param points   P as the target of queries
+/// @param deepest  no point of the edge is deeper in Q than this; >= 0
+/// Cost: one traversal, and two for each edge of Q that it crosses in overlap.
+void contacts_of_edge(const Side& side, const Target& points, Pace& pace, std::uint32_t edge,
+                      double deepest, double delta, Scratch& scratch) noexcept;
+
+}  // namespace palpate::contact

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles of a surface near a point: a traversal of the wide tree (BVH) of its image.
+#pragma once
+
+#include <cstdint>
+
+#include "rt_core/base/assert.hpp"
+#include "rt_core/base/pace.hpp"
+#include "rt_core/contact/surface.hpp"
+#include "rt_core/regions/kernels.hpp"
+
+namespace palpate::contact {
+
+/// A body as the target of queries.
+struct Target {
+  Surface surface;
+  const regions::Kernels* kernels = nullptr;
+};
+
+/// Work units: a node is one, and so are this many triangles.
+inline constexpr std::uint32_t kTrianglesPerUnit = 4;
+
+/// Calls visit(triangle) for every triangle whose box is no farther from x than the radius, nearer
+/// boxes first below one node. `radius` is read again before every node, so that visit may shrink
+/// it.
+/// @param x  in the surface's coordinates; radius in its units
+/// Cost: a unit for each node and for kTrianglesPerUnit triangles. No recursion.
+template <class Visit>
+[[gnu::noinline]] void for_each_near(const Target& target, Pace& pace, Vec3d x,
+                                     const double& radius, Visit visit) noexcept {
+  constexpr double kRounding = 2e-6;
+  struct Level {
+    std::uint32_t first;  // child of its node
+    std::uint32_t near;   // bit i: child i is still to be seen
+    float squared[regions::kBatch];
+  };
+  Level levels[image::kMaxRegionDepth];
+  const ImageView& image = *target.surface.image;
+  const double per_unit = 1 / target.surface.scale;
+  const Vec3d in_image = per_unit * x;
+  const Vec3f point = vec_cast<float>(in_image);
+  const double slack = kRounding * (1 + norm(in_image));
+  const auto limit = [&] {
+    const double reach = per_unit * radius + slack;
+    return static_cast<float>(reach * reach);
+  };
+  std::uint32_t depth = 0;
+  std::uint32_t node = 0;
+  for (;;) {
+    const image::RegionNode& at = image.region_nodes[node];
+    PALPATE_ASSERT(depth < image::kMaxRegionDepth);
+    Level& level = levels[depth];
+    level.first = at.first;
+    level.near = target.kernels->point_boxes(point, at, limit(), level.squared);
+    pace.charge(1);
+    if (at.leaf != 0) {
+      std::uint32_t seen = 0;
+      for (std::uint32_t near = level.near; near != 0; near &= near - 1, ++seen) {
+        const auto slot = static_cast<std::uint32_t>(__builtin_ctz(near));
+        if (level.squared[slot] <= limit()) visit(at.first + slot);
+      }
+      pace.charge(seen / kTrianglesPerUnit);
+    } else {
+      ++depth;
+    }
+    // Up to the next level with a child that may be near; the nearest of them.
+    for (;;) {
+      if (depth == 0) return;
+      Level& above = levels[depth - 1];
+      const float below = limit();
+      std::uint32_t nearest = regions::kBatch;
+      for (std::uint32_t near = above.near; near != 0; near &= near - 1) {
+        const auto slot = static_cast<std::uint32_t>(__builtin_ctz(near));
+        if (above.squared[slot] > below) {
+          above.near &= ~(1u << slot);
+        } else if (nearest == regions::kBatch || above.squared[slot] < above.squared[nearest]) {
+          nearest = slot;
+        }
+      }
+      if (nearest < regions::kBatch) {
+        above.near &= ~(1u << nearest);
+        node = above.first + nearest;
+        break;
+      }
+      --depth;
+    }
+  }
+}
+
+/// A point's signed distance from a surface: negative inside.
+struct SignedDistance {
+  Foot foot;         ///< foot.triangle is kNone where nothing is within the limit
+  double value = 0;  ///< meaningful where there is a foot
+};
+
+/// @param hint   a triangle that may be near, or kNone
+/// @param limit  farther surfaces are of no interest
+SignedDistance signed_distance(const Target& target, Pace& pace, Vec3d x, std::uint32_t hint,
+                               double limit) noexcept;
+
+}  // namespace palpate::contact

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/contact_search.hpp"
+
+#include <limits>
+
+#include "rt_core/base/queue.hpp"
+#include "rt_core/contact/facing.hpp"
+#include "rt_core/force/constraints.hpp"
+#include "rt_core/regions/measure.hpp"
+
+namespace palpate::regions {
+namespace {
+
+/// Rounds of measuring and solving, at most.
+constexpr std::uint32_t kMostRounds = 64;
+/// Of the regions that are open, one in so many is measured before the push is solved again; at
+/// least kLeastAtOnce.
+constexpr std::uint32_t kPartAtOnce = 4;
+constexpr std::uint32_t kLeastAtOnce = 4;
+/// Of a region so many vertices and edges are measured before others have their turn; twice as many
+/// after each so many rounds.
+constexpr std::uint32_t kFewPerVisit = 4;
+constexpr std::uint32_t kRoundsToDouble = 4;
+/// A contact counts in the torque where it is stronger than half of the push (force/wrench.hpp).
+constexpr double kTorqueShare = 0.5;
+/// Work units: regions that are looked through, and contacts that a push is solved for.
+constexpr std::uint32_t kCollectedPerUnit = 4;
+constexpr std::uint32_t kSolvedPerUnit = 8;
+
+struct HigherPriority {
+  std::span<const NearRegion> near;
+  bool operator()(std::uint32_t a, std::uint32_t b) const noexcept {
+    return near[a].priority > near[b].priority || (near[a].priority == near[b].priority && a < b);
+  }
+};
+
+class ContactSearch {
+ public:
+  ContactSearch(ContactMemory& memory, const ContactDemand& demand, Pace& pace) noexcept
+      : memory_(memory),
+        pace_(pace),
+        tolerated_m_(demand.tolerated_push_m),
+        measure_(memory, pace, explanation_, out_) {
+    explanation_.delta_m = demand.delta_m;
+  }
+
+  ContactSearchResult run() noexcept {
+    ++memory_.tick;
+    out_.min_distance_m = std::numeric_limits<double>::infinity();
+    gather();
+    for (std::uint32_t i = 0; i < memory_.warm.count && pace_.go_on(); ++i) {
+      measure_.source(memory_.warm.sources[i]);
+    }
+    // Vertices tell most for their time; then edges, and what counts in the torque alone.
+    out_.force_complete = explain(1, false) && explain(1, true);
+    out_.complete = out_.force_complete && explain(kTorqueShare, true) && !out_.contacts_full;
+    conclude();
+    return out_;
+  }
+
+ private:
+  /// Regions that may be within reach.
+  void gather() noexcept {
+    for (std::uint32_t side = 0; side < memory_.sides.size(); ++side) {
+      const std::uint32_t pair = side / 2;
+      const SideView& view = memory_.views[side] =
+          view_of(memory_.pairs[pair], pair, memory_.bodies[pair], memory_.tool, side % 2 == 0,
+                  *memory_.kernels);
+      if (!view.pushes_tool) continue;
+      // The bodies as they were before detail was left out may be nearer.
+      const double with_detail = view.delta + memory_.pairs[pair].deviation;
+      const double reach =
+          contact::kReach * view.delta > with_detail ? contact::kReach * view.delta : with_detail;
+      const double deepest = -view.side.target.surface.scale;  // nothing is deeper than the radius
+      const std::span<const RegionBound> bounds = memory_.sides[side].regions;
+      for (std::uint32_t region = 0; region < bounds.size(); ++region) {
+        const double lower = bounds[region].lower_until - view.odometer;
+        if (lower > reach) continue;
+        memory_.near[near_++] = {lower > deepest ? lower : deepest, 0, side, region, 0};
+      }
+    }
+    out_.near_regions = near_;
+  }
+
+  /// Measures what a share of the push does not explain, until nothing is left.
+  /// @return false where the budget or the rounds have ended it
+  bool explain(double share, bool edges) noexcept {
+    explanation_.share = share;
+    explanation_.edges = edges;
+    ++explanation_.version;
+    for (std::uint32_t round = 0; round < kMostRounds; ++round) {
+      solve();
+      const std::uint32_t open = collect_open();
+      if (open == 0) out_.excess_m = out_.stronger_m = 0;
+      if (open == 0 || is_tolerable()) return true;
+      MinQueue<std::uint32_t, HigherPriority> queue(memory_.queue.first(open),
+                                                    HigherPriority{memory_.near});
+      queue.fill();
+      const std::uint32_t part = open / kPartAtOnce;
+      const std::uint32_t at_once = part > kLeastAtOnce ? part : kLeastAtOnce;
+      for (std::uint32_t i = 0; i < at_once && !queue.empty(); ++i) {
+        if (!pace_.go_on()) {
+          solve();
+          return false;
+        }
+        measure_.region(memory_.near[queue.top()], kFewPerVisit << (round / kRoundsToDouble));
+        queue.pop();
+      }
+    }
+    solve();
+    return collect_open() == 0;
+  }
+
+  bool is_tolerable() noexcept {
+    if (!(tolerated_m_ > 0) || out_.push.carrying_count == 0 || explanation_.share < 1)
+      return false;
+    bound_error();
+    return push_error_m(out_) <= tolerated_m_;
+  }
+
+  /// By how much a region may change the push; what is settled may not.
+  double excess_m(const NearRegion& item) const noexcept {
+    if (item.lower >= kUnknown || item.settled == explanation_.version) return -kUnknown;
+    const SideView& view = memory_.views[item.side];
+    return explanation_.excess_m(view, explanation_.explained_m(view, item.region), item.lower);
+  }
+
+  std::uint32_t collect_open() noexcept {
+    pace_.charge(near_ / kCollectedPerUnit);
+    std::uint32_t open = 0;
+    for (std::uint32_t i = 0; i < near_; ++i) {
+      NearRegion& item = memory_.near[i];
+      item.priority = excess_m(item);
+      if (!explanation_.is_open(item.priority)) continue;
+      if (measure_.is_stale(item)) {
+        const SideView& view = memory_.views[item.side];
+        item.priority = explanation_.excess_m(view, 0, measure_.likely_distance(item));
+      }
+      memory_.queue[open++] = i;
+    }
+    return open;
+  }
+
+  void solve() noexcept {
+    const std::span<force::PushConstraint> constraints = memory_.constraints.first(out_.contacts);
+    out_.strongest_m = force::set_constraints(memory_.contacts.first(out_.contacts), memory_.bodies,
+                                              memory_.tool, explanation_.delta_m, constraints);
+    std::uint32_t start[force::kMostCarrying];
+    for (std::uint32_t i = 0; i < out_.push.carrying_count; ++i) {
+      start[i] = out_.push.carrying[i].index;
+    }
+    out_.push = force::least_push(constraints, {start, out_.push.carrying_count});
+    pace_.charge(out_.contacts / kSolvedPerUnit);
+    const force::Push& push = out_.push.push;
+    const bool same = push.vector == explanation_.push.vector &&
+                      push.squeeze_diagonal == explanation_.push.squeeze_diagonal &&
+                      push.squeeze_mixed == explanation_.push.squeeze_mixed &&
+                      out_.strongest_m == explanation_.strongest_m;
+    if (!same) ++explanation_.version;
+    explanation_.push = push;
+    explanation_.strongest_m = out_.strongest_m;
+  }
+
+  /// By how much what is not measured may change the push.
+  void bound_error() noexcept {
+    out_.excess_m = out_.stronger_m = 0;
+    for (std::uint32_t i = 0; i < near_; ++i) {
+      const NearRegion& item = memory_.near[i];
+      const double excess = excess_m(item);
+      if (!explanation_.is_open(excess)) continue;
+      const double stronger = explanation_.stronger_m(item.lower * memory_.views[item.side].unit_m);
+      if (stronger > out_.stronger_m) out_.stronger_m = stronger;
+      if (excess > out_.excess_m) out_.excess_m = excess;
+    }
+  }
+
+  /// What is left open, and what carries.
+  void conclude() noexcept {
+    if (!out_.force_complete) bound_error();
+    out_.unresolved_lower_m = std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < near_; ++i) {
+      const NearRegion& item = memory_.near[i];
+      if (item.lower >= kUnknown) continue;
+      const double lower_m = item.lower * memory_.views[item.side].unit_m;
+      if (lower_m < out_.unresolved_lower_m) out_.unresolved_lower_m = lower_m;
+    }
+    memory_.warm.count = out_.push.carrying_count;
+    for (std::uint32_t i = 0; i < out_.push.carrying_count; ++i) {
+      memory_.warm.sources[i] = memory_.sources[out_.push.carrying[i].index];
+    }
+  }
+
+  ContactMemory& memory_;
+  Pace& pace_;
+  double tolerated_m_;
+  ContactSearchResult out_;
+  Explanation explanation_;
+  Measuring measure_;
+  std::uint32_t near_ = 0;
+};
+
+}  // namespace
+
+double push_error_m(const ContactSearchResult& found) noexcept {
+  return force::push_error(found.push.push, found.excess_m) +
+         force::push_error(found.push.push, 0.5 * found.stronger_m);
+}
+
+ContactSearchResult search_contacts(ContactMemory& memory, const ContactDemand& demand,
+                                    Pace& pace) noexcept {
+  return ContactSearch(memory, demand, pace).run();
+}
+
+}  // namespace palpate::regions

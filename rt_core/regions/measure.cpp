@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rt_core/regions/measure.hpp"
+
+#include "rt_core/contact/facing.hpp"
+#include "rt_core/regions/explained.hpp"
+
+namespace palpate::regions {
+namespace {
+
+/// Strengths within this of what is explained, in delta, change nothing that is felt.
+constexpr double kNegligible = 1e-9;
+/// A region's centre is measured where that may raise its bound by so many delta.
+constexpr double kWorthTightening = 0.1;
+/// Bounds that are so many delta below what is likely say nothing of where to look first.
+constexpr double kStale = 1;
+/// The nearest point of a region is likely so many of its radii nearer than its centre.
+constexpr double kLikelyRadius = 0.5;
+/// Vertices and edges that are passed over by their bounds.
+constexpr std::uint32_t kPassedOverPerUnit = 8;
+constexpr double kRoomForRounding = 1 + 1e-9;
+constexpr double kAnywhere = 1e18;
+
+double larger(double a, double b) noexcept { return a > b ? a : b; }
+double smaller(double a, double b) noexcept { return a < b ? a : b; }
+
+}  // namespace
+
+double Explanation::strength_of_distance(double lower_m) const noexcept {
+  // Ways out of overlap are at most kMostDetour depths long.
+  return lower_m >= 0 ? delta_m - lower_m : delta_m - contact::kMostDetour * lower_m;
+}
+
+double Explanation::stronger_m(double lower_m) const noexcept {
+  return strength_of_distance(lower_m) - strongest_m;
+}
+
+bool Explanation::is_open(double excess) const noexcept { return excess > kNegligible * delta_m; }
+
+double Explanation::explained_m(const SideView& view, Vec3d axis, double cosine) const noexcept {
+  const Vec3d push_axis = cosine > -1 ? view.push_axis(axis) : Vec3d{};
+  const double by_push = explained(push, push_axis, cosine, share);
+  // What is stronger than the strongest makes fading contacts weaker.
+  return share < 1 ? by_push : smaller(by_push, strongest_m);
+}
+
+double Explanation::explained_m(const SideView& view, std::uint32_t region) const noexcept {
+  const image::SurfaceRun& r = view.image().surface_runs[region];
+  return explained_m(view, vec3d(r.normal), static_cast<double>(r.normal_cos));
+}
+
+double Explanation::excess_m(const SideView& view, double explained_m,
+                             double lower) const noexcept {
+  const double lower_m = lower * view.unit_m;
+  if (lower_m > contact::kReach * delta_m) return -kUnknown;
+  return strength_of_distance(lower_m) - explained_m;
+}
+
+void Measuring::source(const ContactSource& source) noexcept {
+  if ((source.item & ContactSource::kEdge) != 0) {
+    edge(source.side, source.item & ~ContactSource::kEdge);
+  } else {
+    vertex(source.side, source.item);
+  }
+}
+
+void Measuring::region(NearRegion& item, std::uint32_t most) noexcept {
+  if (tighten(item)) return;
+  const SideView& view = memory_.views[item.side];
+  const image::SurfaceRun run = view.image().surface_runs[item.region];
+  Visit visit;
+  visit.left = most;
+  visit.explained_m = explanation_.explained_m(view, item.region);
+  pace_.charge((run.vertices + run.edges) / kPassedOverPerUnit);
+  for (std::uint32_t i = 0; i < run.vertices; ++i) visit_vertex(item, run.first_vertex + i, visit);
+  for (std::uint32_t i = 0; i < run.edges; ++i) visit_edge(item, run.first_edge + i, visit);
+  RegionBound& bound = memory_.sides[item.side].regions[item.region];
+  if (visit.least < kUnknown) {
+    bound.lower_until = larger(bound.lower_until, visit.least + view.odometer);
+  }
+  item.lower = visit.unmeasured;
+  if (!visit.open) item.settled = explanation_.version;
+}
+
+/// Whether something of a region is open, and is to be measured now.
+bool Measuring::measures(const SideView& view, const contact::NormalCone& cone, double lower,
+                         Visit& visit) noexcept {
+  const double explained_m = explanation_.explained_m(view, cone.axis, cone.cosine);
+  if (!explanation_.is_open(explanation_.excess_m(view, explained_m, lower))) return false;
+  visit.open = true;
+  if (visit.left == 0 || !pace_.go_on()) return false;
+  --visit.left;
+  return true;
+}
+
+void Measuring::visit_vertex(const NearRegion& item, std::uint32_t index, Visit& visit) noexcept {
+  const SideView& view = memory_.views[item.side];
+  VertexBound& at = memory_.sides[item.side].vertices[index];
+  double lower = larger(at.lower_until - view.odometer, item.lower);
+  if (at.measured_tick != memory_.tick &&
+      explanation_.is_open(explanation_.excess_m(view, visit.explained_m, lower)) &&
+      measures(view, contact::cone_of_vertex(view.side.points, index), lower, visit)) {
+    vertex(item.side, index);
+  }
+  if (at.measured_tick == memory_.tick) {
+    lower = at.lower_until - view.odometer;
+  } else {
+    visit.unmeasured = smaller(visit.unmeasured, lower);
+  }
+  visit.least = smaller(visit.least, lower);
+}
+
+void Measuring::visit_edge(const NearRegion& item, std::uint32_t index, Visit& visit) noexcept {
+  const SideView& view = memory_.views[item.side];
+  const double lower = edge_bound({item.side, index}, item.lower);
+  visit.least = smaller(visit.least, lower);
+  if (memory_.sides[item.side].edge_ticks[index] == memory_.tick) return;
+  const auto cone = [&] {
+    const std::uint32_t name = view.image().surface_edges[index];
+    return contact::cone_of_edge(contact::edge_of(view.side.points, name));
+  };
+  if (explanation_.edges &&
+      explanation_.is_open(explanation_.excess_m(view, visit.explained_m, lower)) &&
+      measures(view, cone(), lower, visit)) {
+    edge(item.side, index);
+  } else {
+    visit.unmeasured = smaller(visit.unmeasured, lower);
+  }
+}
+
+bool Measuring::is_stale(const NearRegion& item) const noexcept {
+  const SideView& view = memory_.views[item.side];
+  const RegionBound& bound = memory_.sides[item.side].regions[item.region];
+  return bound.upper_since + view.odometer > item.lower + kStale * view.delta;
+}
+
+Plane Measuring::plane_at(const SideView& view, Vec3d point) noexcept {
+  const contact::SignedDistance at = contact::signed_distance(
+      view.side.target, pace_, view.side.to_target(point), image::kNone, kAnywhere);
+  const Vec3d normal = contact::pseudonormal(view.side.target.surface, at.foot);
+  const double length = norm(normal);
+  return {at.foot.point, length > 0 ? (1 / length) * normal : Vec3d{}, at.value, memory_.tick};
+}
+
+double Measuring::likely_distance(const NearRegion& item) noexcept {
+  const SideView& view = memory_.views[item.side];
+  Plane& nearest = memory_.sides[item.side].nearest;
+  if (nearest.tick != memory_.tick) nearest = plane_at(view, {});
+  const Sphere sphere = sphere_of(view, item.region);
+  return dot(nearest.normal, view.side.to_target(sphere.centre) - nearest.foot) -
+         kLikelyRadius * sphere.radius;
+}
+
+bool Measuring::tighten(NearRegion& item) noexcept {
+  const SideView& view = memory_.views[item.side];
+  SideMemory& side = memory_.sides[item.side];
+  RegionBound& bound = side.regions[item.region];
+  const double may_prove = bound.upper_since + view.odometer;
+  if (may_prove <= item.lower + kWorthTightening * view.delta) return false;
+  const Sphere sphere = sphere_of(view, item.region);
+  const Plane plane = plane_at(view, sphere.centre);
+  if (side.nearest.tick != memory_.tick || plane.distance < side.nearest.distance) {
+    side.nearest = plane;
+  }
+  const double lower = plane.distance - sphere.radius;
+  bound.upper_since = lower - view.odometer;
+  bound.lower_until = larger(bound.lower_until, lower + view.odometer);
+  item.lower = larger(item.lower, lower);
+  const std::uint32_t likely = lower_vertices(item, plane, sphere);
+  if (likely != image::kNone) vertex(item.side, likely);
+  return true;
+}
+
+/// Signed distances change no faster than points move.
+/// @return the vertex that is likely to be nearest, kNone where none is likely within reach
+std::uint32_t Measuring::lower_vertices(const NearRegion& item, const Plane& plane,
+                                        const Sphere& sphere) noexcept {
+  const SideView& view = memory_.views[item.side];
+  const image::SurfaceRun run = view.image().surface_runs[item.region];
+  std::uint32_t nearest = image::kNone;
+  double least = contact::kReach * view.delta;
+  for (std::uint32_t i = 0; i < run.vertices; ++i) {
+    const std::uint32_t index = run.first_vertex + i;
+    const Vec3d point = contact::position(view.side.points, index);
+    VertexBound& at = memory_.sides[item.side].vertices[index];
+    const double by_centre = plane.distance - norm(point - sphere.centre) * kRoomForRounding;
+    at.lower_until = larger(at.lower_until, by_centre + view.odometer);
+    const double likely = dot(plane.normal, view.side.to_target(point) - plane.foot);
+    if (likely < least && at.measured_tick != memory_.tick) {
+      least = likely;
+      nearest = index;
+    }
+  }
+  return nearest;
+}
+
+double Measuring::edge_bound(const ContactSource& edge, double region_lower) const noexcept {
+  const SideView& view = memory_.views[edge.side];
+  const SideMemory& side = memory_.sides[edge.side];
+  const contact::Surface& surface = view.side.points;
+  const std::uint32_t name = view.image().surface_edges[edge.item];
+  const std::uint32_t from = contact::vertex_of(surface, name / 3, name % 3);
+  const std::uint32_t to = contact::vertex_of(surface, name / 3, (name % 3 + 1) % 3);
+  const double length = norm(contact::position(surface, from) - contact::position(surface, to));
+  const double ends = side.vertices[from].lower_until + side.vertices[to].lower_until;
+  return larger(0.5 * (ends - length) - view.odometer, region_lower);
+}
+
+void Measuring::vertex(std::uint32_t side, std::uint32_t index) noexcept {
+  const SideView& view = memory_.views[side];
+  VertexBound& at = memory_.sides[side].vertices[index];
+  if (at.measured_tick == memory_.tick) return;
+  at.measured_tick = memory_.tick;
+  const contact::SignedDistance distance = contact::contacts_of_vertex(
+      view.side, pace_, index, at.nearest, view.delta, *memory_.scratch);
+  at.nearest = distance.foot.triangle;
+  at.lower_until = distance.value + view.odometer;
+  out_.min_distance_m = smaller(out_.min_distance_m, distance.value * view.unit_m);
+  take({side, index});
+}
+
+void Measuring::edge(std::uint32_t side, std::uint32_t index) noexcept {
+  const SideView& view = memory_.views[side];
+  std::uint32_t& tick = memory_.sides[side].edge_ticks[index];
+  if (tick == memory_.tick) return;
+  tick = memory_.tick;
+  // With both ends measured it is known how deep the edge may be, and so how far to look.
+  const std::uint32_t name = view.image().surface_edges[index];
+  vertex(side, contact::vertex_of(view.side.points, name / 3, name % 3));
+  vertex(side, contact::vertex_of(view.side.points, name / 3, (name % 3 + 1) % 3));
+  const double lower = edge_bound({side, index}, -view.side.target.surface.scale);
+  if (lower > contact::kReach * view.delta) return;
+  contact::contacts_of_edge(view.side, view.points, pace_, name, lower < 0 ? -lower : 0, view.delta,
+                            *memory_.scratch);
+  for (const contact::FoundContact& found : memory_.scratch->found.all()) {
+    out_.min_distance_m = smaller(out_.min_distance_m, found.distance * view.unit_m);
+  }
+  take({side, index | ContactSource::kEdge});
+}
+
+void Measuring::take(const ContactSource& source) noexcept {
+  const SideView& view = memory_.views[source.side];
+  const ImageView& target = *view.side.target.surface.image;
+  for (const contact::FoundContact& found : memory_.scratch->found.all()) {
+    if (out_.contacts == memory_.contacts.size()) {
+      out_.contacts_full = true;
+      return;
+    }
+    const Vec3d point = view.world(found.point);
+    const Vec3d foot = view.world(found.foot);
+    const Vec3d normal = view.to_world * found.normal;
+    Contact c;
+    c.point_a_m = view.points_of_a ? point : foot;
+    c.point_b_m = view.points_of_a ? foot : point;
+    c.normal = view.points_of_a ? normal : -normal;
+    c.distance_m = found.distance * view.unit_m;
+    c.centre_m = point - (0.5 * c.distance_m) * normal;
+    c.share = found.weight;
+    c.pair = view.pair;
+    (view.points_of_a ? c.piece_b : c.piece_a) = target.region_triangles[found.triangle].piece;
+    memory_.sources[out_.contacts] = source;
+    memory_.contacts[out_.contacts++] = c;
+  }
+}
+
+}  // namespace palpate::regions
