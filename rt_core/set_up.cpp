@@ -82,6 +82,8 @@ struct Layout {
   std::span<regions::NearRegion> near;
   std::span<std::uint32_t> open;
   std::span<regions::ContactSource> sources;
+  std::span<regions::LikelyContact> likely;
+  std::span<double> likely_regions, likely_vertices;
 };
 
 std::size_t smaller(std::size_t a, std::size_t b) noexcept { return a < b ? a : b; }
@@ -136,6 +138,9 @@ void lay_out_search(Arena& arena, const Scene& scene, const Limits& limits, Layo
   out.near = arena.array<regions::NearRegion>(counts.regions);
   out.open = arena.array<std::uint32_t>(counts.regions);
   out.sources = arena.array<regions::ContactSource>(limits.contacts);
+  out.likely = arena.array<regions::LikelyContact>(counts.vertices);
+  out.likely_regions = arena.array<double>(counts.regions);
+  out.likely_vertices = arena.array<double>(counts.vertices);
 }
 
 void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
@@ -199,6 +204,8 @@ void attach_sides(const Layout& layout, const Scene& scene) noexcept {
     side.regions = layout.region_bounds.subspan(first.regions, points.regions.size());
     side.vertices = layout.vertex_bounds.subspan(first.vertices, points.surface_vertices.size());
     side.edge_ticks = layout.edge_ticks.subspan(first.edges, points.surface_edges.size());
+    side.likely = {layout.likely_regions.subspan(first.regions, points.regions.size()),
+                   layout.likely_vertices.subspan(first.vertices, points.surface_vertices.size())};
     first.regions += points.regions.size();
     first.vertices += points.surface_vertices.size();
     first.edges += points.surface_edges.size();
@@ -220,6 +227,7 @@ void attach_search(const Layout& layout, const Scene& scene, Engine& e) noexcept
   e.search.near = layout.near;
   e.search.queue = layout.open;
   e.search.sources = layout.sources;
+  e.search.likely = layout.likely;
 }
 
 /// Points the engine to its memory and its scene. Values stay as they are.

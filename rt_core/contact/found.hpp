@@ -66,9 +66,14 @@ struct WayOut {
 /// Ways out of one point, at most; the strongest are kept.
 inline constexpr std::uint32_t kMostWays = 64;
 
+/// Triangles near one point that are kept for a second look; where there are more, the tree is
+/// asked twice.
+inline constexpr std::uint32_t kMostFeet = 256;
+
 /// Working memory of one point or edge at a time, and what it has given.
 struct Scratch {
   FoundContacts found;
+  Foot feet[kMostFeet];
   WayOut ways[kMostWays];
   force::PushConstraint constraints[kMostWays];
 };
@@ -77,8 +82,8 @@ struct Scratch {
 /// @param hint   a triangle of Q that may be near it, or kNone
 /// @param delta  contact tolerance, in units of the pair
 /// @return the vertex's signed distance from Q
-/// Cost: two traversals of Q's tree, of which the second meets all triangles within 1.8 delta, or
-/// three depths.
+/// Cost: one traversal of Q's tree that meets all triangles within 1.8 delta, or three depths;
+/// without a good hint, or where very many are near, another one before.
 SignedDistance contacts_of_vertex(const Side& side, Pace& pace, std::uint32_t vertex,
                                   std::uint32_t hint, double delta, Scratch& scratch) noexcept;
 

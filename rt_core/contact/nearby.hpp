@@ -91,7 +91,14 @@ template <class Visit>
 struct SignedDistance {
   Foot foot;         ///< foot.triangle is kNone where nothing is within the limit
   double value = 0;  ///< meaningful where there is a foot
+
+  /// Keeps the nearer foot, of equally near ones that of the first triangle.
+  /// @return whether it is the other
+  bool see(const Foot& other) noexcept;
 };
+
+/// The distance of x from its foot, the nearest of all: negative inside.
+double signed_by(const Surface& surface, const Foot& foot, Vec3d x) noexcept;
 
 /// @param hint   a triangle that may be near, or kNone
 /// @param limit  farther surfaces are of no interest

@@ -37,23 +37,60 @@ class VertexContacts {
 
   SignedDistance run(std::uint32_t hint) noexcept {
     constexpr double kAnywhere = 1e18;
-    const SignedDistance at = signed_distance(side_.target, pace_, x_, hint, kAnywhere);
+    SignedDistance at;
+    if (!collect(hint, at)) {
+      at = signed_distance(side_.target, pace_, x_, hint, kAnywhere);
+      feet_ = 0;
+    }
     if (at.foot.triangle == image::kNone || at.value > reach_) return at;
     inside_ = at.value < 0;
     depth_ = inside_ ? -at.value : 0;
-    double radius = reach_ / kLeastTiltCosine;
-    if (kMostDetour * depth_ > radius) radius = kMostDetour * depth_;
-    radius *= kRoomForRounding;
+    const double radius = radius_of(depth_);
     const double radius2 = radius * radius;
-    for_each_near(side_.target, pace_, x_, radius, [&](std::uint32_t triangle) {
-      const Foot foot = closest_point(side_.target.surface, triangle, x_);
-      if (foot.squared <= radius2) see(foot);
-    });
+    if (feet_ > 0) {
+      for (std::uint32_t i = 0; i < feet_; ++i) {
+        if (scratch_.feet[i].squared <= radius2) see(scratch_.feet[i]);
+      }
+    } else {
+      for_each_near(side_.target, pace_, x_, radius, [&](std::uint32_t triangle) {
+        const Foot foot = closest_point(side_.target.surface, triangle, x_);
+        if (foot.squared <= radius2) see(foot);
+      });
+    }
     if (ways_ > 0) leave();
     return at;
   }
 
  private:
+  /// How far triangles may be that tell of contacts.
+  double radius_of(double depth) const noexcept {
+    const double radius = reach_ / kLeastTiltCosine;
+    return (kMostDetour * depth > radius ? kMostDetour * depth : radius) * kRoomForRounding;
+  }
+
+  /// With a hint that is near, all triangles that tell of contacts are met at once.
+  /// @return false where that is not known, or they are too many
+  bool collect(std::uint32_t hint, SignedDistance& at) noexcept {
+    if (hint == image::kNone) return false;
+    const double near = sqrt_of(closest_point(side_.target.surface, hint, x_).squared);
+    if (near > reach_) return false;
+    const double radius = radius_of(near);
+    const double radius2 = radius * radius;
+    for_each_near(side_.target, pace_, x_, radius, [&](std::uint32_t triangle) {
+      const Foot foot = closest_point(side_.target.surface, triangle, x_);
+      if (foot.squared > radius2 ||
+          squared_norm(face_normal(side_.target.surface, triangle)) == 0) {
+        return;
+      }
+      if (feet_ < kMostFeet) scratch_.feet[feet_] = foot;
+      ++feet_;
+      at.see(foot);
+    });
+    if (feet_ > kMostFeet || at.foot.triangle == image::kNone) return false;
+    at.value = signed_by(side_.target.surface, at.foot, x_);
+    return true;
+  }
+
   void see(const Foot& foot) noexcept {
     const Surface& target = side_.target.surface;
     const Vec3d face = face_normal(target, foot.triangle);
@@ -177,6 +214,7 @@ class VertexContacts {
   bool inside_ = false;
   double depth_ = 0;
   std::uint32_t ways_ = 0;
+  std::uint32_t feet_ = 0;  // in scratch_.feet
 };
 
 }  // namespace

@@ -28,6 +28,12 @@ struct Push {
     const Vec3d mixed{n.x * n.y, n.y * n.z, n.z * n.x};
     return dot(square, squeeze_diagonal) + 2 * dot(mixed, squeeze_mixed);
   }
+  /// S n
+  [[nodiscard]] Vec3d squeezed(Vec3d n) const noexcept {
+    return {squeeze_diagonal.x * n.x + squeeze_mixed.x * n.y + squeeze_mixed.z * n.z,
+            squeeze_mixed.x * n.x + squeeze_diagonal.y * n.y + squeeze_mixed.y * n.z,
+            squeeze_mixed.z * n.x + squeeze_mixed.y * n.y + squeeze_diagonal.z * n.z};
+  }
   [[nodiscard]] double trace() const noexcept {
     return squeeze_diagonal.x + squeeze_diagonal.y + squeeze_diagonal.z;
   }

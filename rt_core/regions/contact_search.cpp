@@ -27,6 +27,17 @@ constexpr double kTorqueShare = 0.5;
 constexpr std::uint32_t kCollectedPerUnit = 4;
 constexpr std::uint32_t kSolvedPerUnit = 8;
 
+/// Vertices that are measured because they are likely to change the push, at most.
+constexpr std::uint32_t kMostGuesses = 64;
+/// Vertices that are looked at before some are measured, and how many then.
+constexpr std::uint32_t kLooksAtOnce = 256;
+constexpr std::uint32_t kFewGuesses = 2;
+/// Likely contacts that exceed the push by less, in delta, are not worth it.
+constexpr double kLikelyExcess = 0.01;
+/// Work units: vertices that are looked at, and likely contacts that are compared with the push.
+constexpr std::uint32_t kLookedPerUnit = 8;
+constexpr std::uint32_t kScannedPerUnit = 64;
+
 struct HigherPriority {
   std::span<const NearRegion> near;
   bool operator()(std::uint32_t a, std::uint32_t b) const noexcept {
@@ -51,6 +62,7 @@ class ContactSearch {
     for (std::uint32_t i = 0; i < memory_.warm.count && pace_.go_on(); ++i) {
       measure_.source(memory_.warm.sources[i]);
     }
+    guess();
     // Vertices tell most for their time; then edges, and what counts in the torque alone.
     out_.force_complete = explain(1, false) && explain(1, true);
     out_.complete = out_.force_complete && explain(kTorqueShare, true) && !out_.contacts_full;
@@ -80,6 +92,60 @@ class ContactSearch {
       }
     }
     out_.near_regions = near_;
+  }
+
+  /// Measures the vertices that are likely to change the push most, until none is. What is likely
+  /// is looked up in parts, so that some of it is measured however early time ends; the next tick
+  /// goes on with the regions that are left.
+  void guess() noexcept {
+    std::uint32_t looked = 0;
+    while (looked < near_ && pace_.go_on()) {
+      std::uint32_t of_part = 0;
+      for (; looked < near_ && of_part < kLooksAtOnce && pace_.go_on(); ++looked) {
+        const NearRegion& item = memory_.near[(memory_.next_look + looked) % near_];
+        LikelyContacts likely(memory_.views[item.side], item.side, memory_.sides[item.side].likely,
+                              memory_.push);
+        of_part += likely.look(item.region, memory_.likely, out_.likely);
+      }
+      pace_.charge(of_part / kLookedPerUnit);
+      measure_likely(looked < near_ ? kFewGuesses : kMostGuesses);
+    }
+    memory_.next_look = near_ > 0 ? (memory_.next_look + looked) % near_ : 0;
+  }
+
+  void measure_likely(std::uint32_t most) noexcept {
+    for (const LikelyContact& c : memory_.likely.first(out_.likely)) {
+      const double strength_m = static_cast<double>(c.strength_m);
+      likely_strongest_m_ = strength_m > likely_strongest_m_ ? strength_m : likely_strongest_m_;
+    }
+    for (std::uint32_t round = 0; round < most && pace_.go_on(); ++round) {
+      solve();
+      const LikelyContact* const next = most_violated();
+      if (next == nullptr) return;
+      measure_.source({next->side, next->vertex});
+    }
+    solve();
+  }
+
+  /// Of likely contacts that are not measured, that which exceeds the push most; null: none does.
+  const LikelyContact* most_violated() noexcept {
+    const force::Push& push = out_.push.push;
+    const LikelyContact* out = nullptr;
+    double most = kLikelyExcess * explanation_.delta_m;
+    for (const LikelyContact& c : memory_.likely.first(out_.likely)) {
+      const double faded =
+          (1 - static_cast<double>(c.weight)) * force::kFadedShare * likely_strongest_m_;
+      const double excess =
+          static_cast<double>(c.strength_m) - faded - push.along(vec_cast<double>(c.push));
+      if (excess <= most ||
+          memory_.sides[c.side].vertices[c.vertex].measured_tick == memory_.tick) {
+        continue;
+      }
+      most = excess;
+      out = &c;
+    }
+    pace_.charge(out_.likely / kScannedPerUnit);
+    return out;
   }
 
   /// Measures what a share of the push does not explain, until nothing is left.
@@ -184,6 +250,8 @@ class ContactSearch {
       const double lower_m = item.lower * memory_.views[item.side].unit_m;
       if (lower_m < out_.unresolved_lower_m) out_.unresolved_lower_m = lower_m;
     }
+    memory_.push.changed_m += 2 * norm(out_.push.push.vector - memory_.push.push.vector);
+    memory_.push.push = out_.push.push;
     memory_.warm.count = out_.push.carrying_count;
     for (std::uint32_t i = 0; i < out_.push.carrying_count; ++i) {
       memory_.warm.sources[i] = memory_.sources[out_.push.carrying[i].index];
@@ -197,6 +265,7 @@ class ContactSearch {
   Explanation explanation_;
   Measuring measure_;
   std::uint32_t near_ = 0;
+  double likely_strongest_m_ = 0;
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <span>
 
 #include "rt_core/force/least_push.hpp"
+#include "rt_core/regions/likely.hpp"
 #include "rt_core/regions/side_view.hpp"
 
 namespace palpate::regions {
@@ -46,6 +47,7 @@ struct SideMemory {
   std::span<RegionBound> regions;
   std::span<VertexBound> vertices;
   std::span<std::uint32_t> edge_ticks;  ///< in which each edge was last measured
+  LikelyMemory likely;
   Plane nearest;
 };
 
@@ -82,12 +84,15 @@ struct ContactMemory {
   std::span<SideView> views;                     ///< likewise, of this tick
   std::span<NearRegion> near;                    ///< [sum of regions over sides]
   std::span<std::uint32_t> queue;                ///< likewise
+  std::span<LikelyContact> likely;               ///< [sum of vertices over sides]
   std::span<Contact> contacts;                   ///< [limits.contacts]
   std::span<ContactSource> sources;              ///< likewise
   std::span<force::PushConstraint> constraints;  ///< likewise
   contact::Scratch* scratch = nullptr;           ///< [1]
   WarmStart warm;
+  PushSoFar push;
   std::uint32_t tick = 0;
+  std::uint32_t next_look = 0;  ///< of the near regions: where looking goes on where time ended it
 };
 
 /// What a search has found.
@@ -100,6 +105,7 @@ struct ContactSearchResult {
   double unresolved_lower_m = 0;  ///< least signed distance of unmeasured points; infinity: none
   double min_distance_m = 0;      ///< least signed distance measured; infinity without any
   std::uint64_t near_regions = 0;
+  std::uint32_t likely = 0;     ///< the first of ContactMemory::likely
   bool complete = false;        ///< nothing left can change force or torque
   bool force_complete = false;  ///< nothing left can change the force
   bool contacts_full = false;

@@ -38,7 +38,7 @@ bool Explanation::is_open(double excess) const noexcept { return excess > kNegli
 
 double Explanation::explained_m(const SideView& view, Vec3d axis, double cosine) const noexcept {
   const Vec3d push_axis = cosine > -1 ? view.push_axis(axis) : Vec3d{};
-  const double by_push = explained(push, push_axis, cosine, share);
+  const double by_push = explained({push, share, strongest_m}, push_axis, cosine);
   // What is stronger than the strongest makes fading contacts weaker.
   return share < 1 ? by_push : smaller(by_push, strongest_m);
 }
