@@ -170,6 +170,23 @@ void add_minima(Engine& engine, Meter& meter, std::uint32_t contacts, Found& fou
   found.certificate.truncated_by_memory |= of_force.truncated_by_memory;
 }
 
+/// Where the budget ends a search, contacts that are likely place the force beside those measured.
+/// @return how many constraints and points there are then
+std::size_t add_likely_places(Engine& engine, const regions::ContactSearchResult& found) noexcept {
+  std::size_t count = found.contacts;
+  for (const regions::LikelyContact& c : engine.search.likely.first(found.likely)) {
+    const regions::SideMemory& side = engine.search.sides[c.side];
+    if (count == engine.push_points.size()) break;
+    if (side.vertices[c.vertex].measured_tick == engine.search.tick) continue;
+    const regions::SideView& view = engine.search.views[c.side];
+    const Vec3d point = view.side.to_target(contact::position(view.side.points, c.vertex));
+    engine.constraints[count] = {vec_cast<double>(c.push), static_cast<double>(c.strength_m)};
+    engine.push_points[count].arm_m = view.world(point) - engine.poses[engine.tool].position_m;
+    ++count;
+  }
+  return count;
+}
+
 /// Searches for the contacts that can change the least push.
 Found find_for_push(Engine& engine, Meter& meter, force::PushWrench& push) noexcept {
   const Settings& s = engine.settings;
@@ -184,8 +201,9 @@ Found find_for_push(Engine& engine, Meter& meter, force::PushWrench& push) noexc
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     points[i].arm_m = contacts[i].centre_m - tool.position_m;
   }
-  push = force::push_wrench(engine.constraints.first(found.contacts), found.push, points, tool, s,
-                            engine.force.places);
+  const std::size_t placed = found.complete ? found.contacts : add_likely_places(engine, found);
+  push = force::push_wrench(engine.constraints.first(placed), found.push,
+                            engine.push_points.first(placed), tool, s, engine.force.places);
   set_weights(contacts, found.push, s.delta_m);
   const double deviation_m = least_error_m(engine.states);
   Found out;

@@ -17,6 +17,8 @@ constexpr double kStale = 1;
 constexpr double kLikelyRadius = 0.5;
 /// Vertices and edges that are passed over by their bounds.
 constexpr std::uint32_t kPassedOverPerUnit = 8;
+/// A vertex is proved to be so many delta farther than it need be.
+constexpr double kProvedBeyond = 0.1;
 constexpr double kRoomForRounding = 1 + 1e-9;
 constexpr double kAnywhere = 1e18;
 
@@ -98,15 +100,35 @@ void Measuring::visit_vertex(const NearRegion& item, std::uint32_t index, Visit&
   double lower = larger(at.lower_until - view.odometer, item.lower);
   if (at.measured_tick != memory_.tick &&
       explanation_.is_open(explanation_.excess_m(view, visit.explained_m, lower)) &&
-      measures(view, contact::cone_of_vertex(view.side.points, index), lower, visit)) {
+      measures(view, contact::cone_of_vertex(view.side.points, index), lower, visit) &&
+      !proves_far(item.side, index, lower)) {
     vertex(item.side, index);
   }
-  if (at.measured_tick == memory_.tick) {
-    lower = at.lower_until - view.odometer;
-  } else {
-    visit.unmeasured = smaller(visit.unmeasured, lower);
-  }
+  lower = larger(at.lower_until - view.odometer, lower);
+  if (at.measured_tick != memory_.tick) visit.unmeasured = smaller(visit.unmeasured, lower);
   visit.least = smaller(visit.least, lower);
+}
+
+/// Whether a vertex is so far that the push explains whatever it touches: cheaper to prove than to
+/// measure. It is proved for a little more, so that it lasts.
+bool Measuring::proves_far(std::uint32_t side, std::uint32_t index, double lower) noexcept {
+  const SideView& view = memory_.views[side];
+  const contact::NormalCone cone = contact::cone_of_vertex(view.side.points, index);
+  const double explained = explanation_.explained_m(view, cone.axis, cone.cosine) / view.unit_m;
+  const double far = smaller(view.delta - explained, contact::kReach * view.delta);
+  // A point that is not within `far` of the surface may be as deep inside.
+  if (!(far > 0) || lower < -far) return false;
+  VertexBound& at = memory_.sides[side].vertices[index];
+  const contact::SignedDistance nearest = contact::signed_distance(
+      view.side.target, pace_, view.side.to_target(contact::position(view.side.points, index)),
+      at.nearest, far + kProvedBeyond * view.delta);
+  double proved = far + kProvedBeyond * view.delta;
+  if (nearest.foot.triangle != image::kNone) {
+    at.nearest = nearest.foot.triangle;
+    proved = nearest.value;
+  }
+  at.lower_until = larger(at.lower_until, proved + view.odometer);
+  return proved >= far;
 }
 
 void Measuring::visit_edge(const NearRegion& item, std::uint32_t index, Visit& visit) noexcept {
