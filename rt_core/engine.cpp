@@ -127,113 +127,99 @@ Found find_by_regions(Engine& engine, Meter& meter) noexcept {
   return out;
 }
 
-/// Contacts beyond delta shape the push but are not reported; nor, where all minima are, those that
-/// carry nothing.
-std::uint32_t keep_reported(std::span<Contact> contacts, const Settings& settings) noexcept {
-  std::uint32_t kept = 0;
-  for (const Contact& c : contacts) {
-    const bool near = c.distance_m < 0 || norm(c.point_a_m - c.point_b_m) < settings.delta_m;
-    if (near && (!settings.exact || c.weight > 0)) contacts[kept++] = c;
-  }
-  return kept;
-}
-
 /// How far the push may be off; 0: not at all.
 double tolerated_push_m(const Settings& s) noexcept {
   const double twice_k = 2 * s.stiffness_N_per_m;
   return s.exact || !(twice_k > 0) ? 0 : s.force_tolerance_N / twice_k;
 }
 
-/// What each contact carries of the force.
-void set_weights(std::span<Contact> contacts, const force::PushResult& push,
-                 double delta_m) noexcept {
-  for (Contact& c : contacts) c.weight = 0;
-  for (std::uint32_t i = 0; i < push.carrying_count; ++i) {
-    Contact& c = contacts[push.carrying[i].index];
-    const double depth_m = delta_m - c.distance_m;
-    if (depth_m > 0) c.weight = 2 * push.carrying[i].multiplier / depth_m;
-  }
+/// So much of a budget, from now on.
+Budget part_of(const Budget& budget, std::uint64_t numerator, std::uint64_t denominator) noexcept {
+  constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
+  Budget out = budget;
+  out.reserve_units = out.reserve_ns = 0;
+  if (out.units != kUnlimited) out.units = out.units / denominator * numerator;
+  if (out.clock_ns == nullptr || out.deadline_ns == kUnlimited) return out;
+  const std::uint64_t now = out.clock_ns(out.clock_context);
+  const std::uint64_t left = out.deadline_ns > now ? out.deadline_ns - now : 0;
+  out.deadline_ns = now + left / denominator * numerator;
+  return out;
 }
 
-/// The minima of all regions, after the contacts that were found for the force.
-void add_minima(Engine& engine, Meter& meter, std::uint32_t contacts, Found& found) noexcept {
-  engine.regions.contacts = engine.contacts.subspan(contacts);
-  const Certificate of_force = found.certificate;
-  const double deepest_m = found.min_distance_m;
-  found = find_by_regions(engine, meter);
-  engine.regions.contacts = engine.contacts;
-  found.contacts += contacts;
-  found.min_distance_m = deepest_m < found.min_distance_m ? deepest_m : found.min_distance_m;
-  found.certificate.force_bound_N = of_force.force_bound_N;
-  found.certificate.truncated_by_time |= of_force.truncated_by_time;
-  found.certificate.truncated_by_units |= of_force.truncated_by_units;
-  found.certificate.truncated_by_memory |= of_force.truncated_by_memory;
-}
-
-/// Where the budget ends a search, contacts that are likely place the force beside those measured.
+/// Where a search has not proved its answer, contacts that are likely place the force beside those
+/// measured.
 /// @return how many constraints and points there are then
 std::size_t add_likely_places(Engine& engine, const regions::ContactSearchResult& found) noexcept {
+  const regions::ContactMemory& search = engine.search;
   std::size_t count = found.contacts;
-  for (const regions::LikelyContact& c : engine.search.likely.first(found.likely)) {
-    const regions::SideMemory& side = engine.search.sides[c.side];
+  for (const regions::LikelyContact& c : search.likely.first(found.likely)) {
     if (count == engine.push_points.size()) break;
-    if (side.vertices[c.vertex].measured_tick == engine.search.tick) continue;
-    const regions::SideView& view = engine.search.views[c.side];
+    if (search.sides[c.side].vertices[c.vertex].measured_tick == search.tick) continue;
+    const regions::SideView& view = search.views[c.side];
     const Vec3d point = view.side.to_target(contact::position(view.side.points, c.vertex));
-    engine.constraints[count] = {vec_cast<double>(c.push), static_cast<double>(c.strength_m)};
+    search.constraints[count] = {vec_cast<double>(c.push), static_cast<double>(c.strength_m)};
     engine.push_points[count].arm_m = view.world(point) - engine.poses[engine.tool].position_m;
     ++count;
   }
   return count;
 }
 
-/// Searches for the contacts that can change the least push.
-Found find_for_push(Engine& engine, Meter& meter, force::PushWrench& push) noexcept {
-  const Settings& s = engine.settings;
-  Pace pace(meter);
-  const regions::ContactSearchResult found =
-      regions::search_contacts(engine.search, {s.delta_m, tolerated_push_m(s)}, pace);
-  engine.tally.lap(Stage::refine, meter);
-  meter.begin_tail();
-  const std::span<Contact> contacts = engine.contacts.first(found.contacts);
-  const std::span<force::PushPoint> points = engine.push_points.first(found.contacts);
+force::PushWrench wrench_of(Engine& engine, const regions::ContactSearchResult& found) noexcept {
   const Pose& tool = engine.poses[engine.tool];
+  const std::span<const Contact> contacts = engine.search.contacts.first(found.contacts);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    points[i].arm_m = contacts[i].centre_m - tool.position_m;
+    engine.push_points[i].arm_m = contacts[i].centre_m - tool.position_m;
   }
-  const std::size_t placed = found.complete ? found.contacts : add_likely_places(engine, found);
-  push = force::push_wrench(engine.constraints.first(placed), found.push,
-                            engine.push_points.first(placed), tool, s, engine.force.places);
-  set_weights(contacts, found.push, s.delta_m);
-  const double deviation_m = least_error_m(engine.states);
-  Found out;
-  out.contacts = keep_reported(contacts, s);
+  const std::size_t placed = found.proved ? found.contacts : add_likely_places(engine, found);
+  return force::push_wrench(engine.search.constraints.first(placed), found.push,
+                            engine.push_points.first(placed), tool, engine.settings,
+                            engine.force.places);
+}
+
+/// Adds those contacts that carry the push to the others, which carry nothing.
+void report_carrying(Engine& engine, const regions::ContactSearchResult& push,
+                     Found& found) noexcept {
+  const double delta_m = engine.settings.delta_m;
+  for (Contact& c : engine.contacts.first(found.contacts)) c.weight = 0;
+  for (std::uint32_t i = 0; i < push.push.carrying_count; ++i) {
+    const force::Carrying& carrying = push.push.carrying[i];
+    Contact c = engine.search.contacts[carrying.index];
+    const bool near = c.distance_m < 0 || norm(c.point_a_m - c.point_b_m) < delta_m;
+    if (!near || found.contacts == engine.contacts.size()) continue;
+    c.weight = 2 * carrying.multiplier / (delta_m - c.distance_m);
+    engine.contacts[found.contacts++] = c;
+  }
+}
+
+/// The force by the least push; distances and their certificate by the minima of all regions. What
+/// is likely comes first, with three quarters of the budget at most; then the minima; proof that
+/// nothing else changes the force is for exact queries.
+Found find_for_push(Engine& engine, const Budget& budget, Meter& meter,
+                    force::PushWrench& push) noexcept {
+  constexpr std::uint64_t kGuess[] = {3, 4};
+  const Settings& s = engine.settings;
+  regions::ContactSearch search(engine.search, {s.delta_m, tolerated_push_m(s)});
+  Meter first(part_of(budget, kGuess[0], kGuess[1]), {});
+  Pace first_pace(first);
+  search.guess(first_pace);
+  meter.charge(first.used());
+  Found out = find_by_regions(engine, meter);
+  Pace pace(meter);
+  if (s.exact) search.prove(pace);
+  const regions::ContactSearchResult& found = search.conclude();
+  push = wrench_of(engine, found);
+  report_carrying(engine, found, out);
   out.clusters = found.push.carrying_count;
-  out.tail_contacts = found.contacts;
-  out.min_distance_m = found.min_distance_m;
-  out.front_nodes = found.near_regions;
-  out.certificate.force_bound_N =
-      2 * s.stiffness_N_per_m * (regions::push_error_m(found) + deviation_m);
-  out.certificate.truncated_by_memory = found.contacts_full;
-  out.certificate.iteration_cap_met = found.push.status != force::PushStatus::solved;
-  if (!found.complete && !found.contacts_full) {
-    out.certificate.truncated_by_units = meter.out_of_units();
-    out.certificate.truncated_by_time = !out.certificate.truncated_by_units;
-  }
-  const std::uint32_t for_force = out.contacts;
-  if (s.exact) {
-    add_minima(engine, meter, for_force, out);
-  } else {
-    const double nearest_m =
-        out.contacts > 0 && out.min_distance_m < s.delta_m ? out.min_distance_m : s.delta_m;
-    const double below_m =
-        found.unresolved_lower_m < nearest_m ? nearest_m - found.unresolved_lower_m : 0;
-    out.certificate.error_bound_m = below_m + deviation_m;
-    if (out.contacts > 0) {
-      out.certificate.contact = ContactStatus::found;
-    } else if (!(found.unresolved_lower_m < s.delta_m)) {
-      out.certificate.contact = ContactStatus::ruled_out;
-    }
+  out.tail_contacts += found.contacts;
+  Certificate& c = out.certificate;
+  c.force_bound_N =
+      2 * s.stiffness_N_per_m * (regions::push_error_m(found) + least_error_m(engine.states));
+  c.truncated_by_memory |= found.contacts_full || push.places_full;
+  c.iteration_cap_met |= found.push.status != force::PushStatus::solved;
+  if (!(s.exact ? found.proved : found.guessed) && !found.contacts_full) {
+    const bool by_units = meter.out_of_units() || first.out_of_units();
+    c.truncated_by_units |= by_units;
+    c.truncated_by_time |= !by_units;
   }
   out.queries = meter.used();
   return out;
@@ -255,13 +241,12 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
   Meter meter(budget, engine.tail);
   engine.tally.begin_tick();
   Found found;
-  if (settings.force_law == ForceLaw::least_push) {
+  if (settings.engine == EngineKind::regions && settings.force_law == ForceLaw::least_push) {
     force::PushWrench push;
-    found = find_for_push(engine, meter, push);
+    found = find_for_push(engine, budget, meter, push);
     out.wrench = force::limited(push.wrench, settings);
     out.stiffness = push.stiffness;
     out.clusters = found.clusters;
-    found.certificate.truncated_by_memory |= push.places_full;
   } else {
     found = settings.engine == EngineKind::levels ? find_by_levels(engine, meter)
                                                   : find_by_regions(engine, meter);

@@ -28,8 +28,7 @@ class Engine {
   regions::QueryMemory regions;
   regions::ContactMemory search;  // of the regions engine with the least push
   std::span<Contact> contacts;
-  std::span<force::PushConstraint> constraints;  // [contacts]
-  std::span<force::PushPoint> push_points;       // [contacts]
+  std::span<force::PushPoint> push_points;  // [search.contacts]
   force::Workspace force;
   TailTime tail;                      // of the ticks so far
   [[no_unique_address]] Tally tally;  // last: its size is a switch of the build

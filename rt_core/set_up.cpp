@@ -71,6 +71,7 @@ struct Layout {
   std::span<regions::CrossingScratch> crossing;
   std::span<regions::Unfinished> unfinished;
   // The search for the least push.
+  std::span<Contact> measured;
   std::span<force::PushConstraint> constraints;
   std::span<force::PushPoint> push_points;
   std::span<regions::SideMemory> sides;
@@ -127,6 +128,7 @@ void lay_out_levels(Arena& arena, const Limits& limits, Layout& out) noexcept {
 
 void lay_out_search(Arena& arena, const Scene& scene, const Limits& limits, Layout& out) noexcept {
   const SideCounts counts = sides_of(scene);
+  out.measured = arena.array<Contact>(limits.contacts);
   out.constraints = arena.array<force::PushConstraint>(limits.contacts);
   out.push_points = arena.array<force::PushPoint>(limits.contacts);
   out.sides = arena.array<regions::SideMemory>(2 * scene.pairs.size());
@@ -214,10 +216,10 @@ void attach_sides(const Layout& layout, const Scene& scene) noexcept {
 
 void attach_search(const Layout& layout, const Scene& scene, Engine& e) noexcept {
   attach_sides(layout, scene);
-  e.constraints = e.search.constraints = layout.constraints;
+  e.search.constraints = layout.constraints;
   e.push_points = layout.push_points;
   e.search.pairs = layout.states;
-  e.search.contacts = layout.contacts;
+  e.search.contacts = layout.measured;
   e.search.kernels = &regions::best_kernels();
   e.search.bodies = scene.pairs;
   e.search.tool = scene.tool;
@@ -330,7 +332,7 @@ bool all_fine_enough(const Engine& engine, const Settings& settings) noexcept {
 
 bool serves(const ImageView& image, const Settings& settings) noexcept {
   if (image.pieces.empty()) return false;
-  if (settings.engine == EngineKind::levels) return settings.force_law == ForceLaw::penalty;
+  if (settings.engine == EngineKind::levels) return true;
   return !image.regions.empty() &&
          (settings.force_law == ForceLaw::penalty || !image.surface_vertices.empty());
 }

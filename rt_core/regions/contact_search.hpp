@@ -9,111 +9,12 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
-#include "rt_core/force/least_push.hpp"
-#include "rt_core/regions/likely.hpp"
-#include "rt_core/regions/side_view.hpp"
+#include "rt_core/base/pace.hpp"
+#include "rt_core/regions/contact_memory.hpp"
+#include "rt_core/regions/measure.hpp"
 
 namespace palpate::regions {
-
-/// "Not known", and farther or deeper than anything.
-inline constexpr double kUnknown = 1e300;
-
-/// Of a region's signed distance from the other body. An odometer (SideView::odometer) tells how
-/// far the bodies have moved: a bound less the motion since is still a bound.
-struct RegionBound {
-  double lower_until = -kUnknown;  ///< lower bound plus the odometer when it was proved
-  double upper_since = kUnknown;   ///< the most that measuring the centre could prove, less it
-};
-
-/// Of a vertex's signed distance from the other body.
-struct VertexBound {
-  double lower_until = -kUnknown;
-  std::uint32_t nearest = image::kNone;  ///< triangle of the other body
-  std::uint32_t measured_tick = 0;
-};
-
-/// The plane at the nearest foot that a tick has met: where to look first. Coordinates of Q.
-struct Plane {
-  Vec3d foot{};
-  Vec3d normal{};
-  double distance = kUnknown;  ///< signed, of the point whose foot it is
-  std::uint32_t tick = 0;
-};
-
-/// What is kept of one side of a pair from tick to tick.
-struct SideMemory {
-  std::span<RegionBound> regions;
-  std::span<VertexBound> vertices;
-  std::span<std::uint32_t> edge_ticks;  ///< in which each edge was last measured
-  LikelyMemory likely;
-  Plane nearest;
-};
-
-/// A region that may be within reach in this tick.
-struct NearRegion {
-  double lower = 0;     ///< of what of it has not been measured in this tick
-  double priority = 0;  ///< by how much it may change the push
-  std::uint32_t side = 0;
-  std::uint32_t region = 0;
-  std::uint32_t settled = 0;  ///< nothing of it was open for this version of the explanation
-};
-
-/// Where a contact comes from: a vertex of the side's points, or an edge (its index in
-/// surface_edges, plus kEdge).
-struct ContactSource {
-  static constexpr std::uint32_t kEdge = 0x80000000u;
-  std::uint32_t side = 0;
-  std::uint32_t item = 0;
-};
-
-/// What was carrying in the last tick: measured first in the next.
-struct WarmStart {
-  ContactSource sources[force::kMostCarrying];
-  std::uint32_t count = 0;
-};
-
-/// Borrowed from the engine.
-struct ContactMemory {
-  const Kernels* kernels = nullptr;
-  std::span<levels::PairState> pairs;
-  std::span<const BodyPair> bodies;
-  std::uint32_t tool = 0;
-  std::span<SideMemory> sides;                   ///< [2 * pairs]: a against b, b against a
-  std::span<SideView> views;                     ///< likewise, of this tick
-  std::span<NearRegion> near;                    ///< [sum of regions over sides]
-  std::span<std::uint32_t> queue;                ///< likewise
-  std::span<LikelyContact> likely;               ///< [sum of vertices over sides]
-  std::span<Contact> contacts;                   ///< [limits.contacts]
-  std::span<ContactSource> sources;              ///< likewise
-  std::span<force::PushConstraint> constraints;  ///< likewise
-  contact::Scratch* scratch = nullptr;           ///< [1]
-  WarmStart warm;
-  PushSoFar push;
-  std::uint32_t tick = 0;
-  std::uint32_t next_look = 0;  ///< of the near regions: where looking goes on where time ended it
-};
-
-/// What a search has found.
-struct ContactSearchResult {
-  std::uint32_t contacts = 0;     ///< the first of ContactMemory::contacts
-  force::PushResult push;         ///< of their constraints, in metres
-  double strongest_m = 0;         ///< the largest strength of a contact
-  double excess_m = 0;            ///< by how much unmeasured contacts may exceed the push
-  double stronger_m = 0;          ///< by how much they may exceed the strongest
-  double unresolved_lower_m = 0;  ///< least signed distance of unmeasured points; infinity: none
-  double min_distance_m = 0;      ///< least signed distance measured; infinity without any
-  std::uint64_t near_regions = 0;
-  std::uint32_t likely = 0;     ///< the first of ContactMemory::likely
-  bool complete = false;        ///< nothing left can change force or torque
-  bool force_complete = false;  ///< nothing left can change the force
-  bool contacts_full = false;
-};
-
-/// How far unmeasured contacts may leave the push off: those that are missing, and those that fade
-/// more the stronger the strongest is.
-[[nodiscard]] double push_error_m(const ContactSearchResult& found) noexcept;
 
 /// What a search is asked for.
 struct ContactDemand {
@@ -121,10 +22,48 @@ struct ContactDemand {
   double tolerated_push_m = 0;  ///< the push may be off by this where anything is felt; 0: exact
 };
 
-/// Poses are set (levels::move).
-/// Cost: the budget and one contact's evaluation, and O(regions); without a budget at most
-/// kMostRounds solutions of the push.
-ContactSearchResult search_contacts(ContactMemory& memory, const ContactDemand& demand,
-                                    Pace& pace) noexcept;
+/// One tick's search. Poses are set (levels::move). guess() comes first, then prove() where the
+/// push has to be exact, then conclude().
+class ContactSearch {
+ public:
+  ContactSearch(ContactMemory& memory, const ContactDemand& demand) noexcept;
+
+  /// Measures what carried in the tick before, and vertices that are likely to change the push
+  /// (likely.hpp), those first that may change it most, until none is.
+  /// Cost: the budget and one contact's evaluation, and O(regions).
+  void guess(Pace& pace) noexcept;
+  /// Measures what is not proved to change nothing, until all is.
+  /// Cost: the budget and one contact's evaluation; without a budget at most kMostRounds solutions
+  /// of the push.
+  void prove(Pace& pace) noexcept;
+  /// Bounds what is left, and keeps what carries for the next tick. O(regions)
+  const ContactSearchResult& conclude() noexcept;
+
+ private:
+  void gather() noexcept;
+  void look_and_measure() noexcept;
+  void measure_likely(std::uint32_t most) noexcept;
+  const LikelyContact* most_violated() noexcept;
+  bool explain(double share, bool edges) noexcept;
+  bool is_tolerable() noexcept;
+  double excess_m(const NearRegion& item) const noexcept;
+  std::uint32_t collect_open() noexcept;
+  void solve() noexcept;
+  void bound_error() noexcept;
+
+  ContactMemory& memory_;
+  Pace* pace_ = nullptr;
+  double tolerated_m_;
+  ContactSearchResult out_;
+  Explanation explanation_;
+  Measuring measure_;
+  std::uint32_t near_ = 0;
+  double likely_strongest_m_ = 0;
+  bool force_proved_ = false;
+};
+
+/// How far unmeasured contacts may leave the push off: those that are missing, and those that fade
+/// more the stronger the strongest is.
+[[nodiscard]] double push_error_m(const ContactSearchResult& found) noexcept;
 
 }  // namespace palpate::regions

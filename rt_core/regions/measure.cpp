@@ -72,7 +72,7 @@ void Measuring::region(NearRegion& item, std::uint32_t most) noexcept {
   Visit visit;
   visit.left = most;
   visit.explained_m = explanation_.explained_m(view, item.region);
-  pace_.charge((run.vertices + run.edges) / kPassedOverPerUnit);
+  pace_->charge((run.vertices + run.edges) / kPassedOverPerUnit);
   for (std::uint32_t i = 0; i < run.vertices; ++i) visit_vertex(item, run.first_vertex + i, visit);
   for (std::uint32_t i = 0; i < run.edges; ++i) visit_edge(item, run.first_edge + i, visit);
   RegionBound& bound = memory_.sides[item.side].regions[item.region];
@@ -89,7 +89,7 @@ bool Measuring::measures(const SideView& view, const contact::NormalCone& cone, 
   const double explained_m = explanation_.explained_m(view, cone.axis, cone.cosine);
   if (!explanation_.is_open(explanation_.excess_m(view, explained_m, lower))) return false;
   visit.open = true;
-  if (visit.left == 0 || !pace_.go_on()) return false;
+  if (visit.left == 0 || !pace_->go_on()) return false;
   --visit.left;
   return true;
 }
@@ -120,7 +120,7 @@ bool Measuring::proves_far(std::uint32_t side, std::uint32_t index, double lower
   if (!(far > 0) || lower < -far) return false;
   VertexBound& at = memory_.sides[side].vertices[index];
   const contact::SignedDistance nearest = contact::signed_distance(
-      view.side.target, pace_, view.side.to_target(contact::position(view.side.points, index)),
+      view.side.target, *pace_, view.side.to_target(contact::position(view.side.points, index)),
       at.nearest, far + kProvedBeyond * view.delta);
   double proved = far + kProvedBeyond * view.delta;
   if (nearest.foot.triangle != image::kNone) {
@@ -157,7 +157,7 @@ bool Measuring::is_stale(const NearRegion& item) const noexcept {
 
 Plane Measuring::plane_at(const SideView& view, Vec3d point) noexcept {
   const contact::SignedDistance at = contact::signed_distance(
-      view.side.target, pace_, view.side.to_target(point), image::kNone, kAnywhere);
+      view.side.target, *pace_, view.side.to_target(point), image::kNone, kAnywhere);
   const Vec3d normal = contact::pseudonormal(view.side.target.surface, at.foot);
   const double length = norm(normal);
   return {at.foot.point, length > 0 ? (1 / length) * normal : Vec3d{}, at.value, memory_.tick};
@@ -233,7 +233,7 @@ void Measuring::vertex(std::uint32_t side, std::uint32_t index) noexcept {
   if (at.measured_tick == memory_.tick) return;
   at.measured_tick = memory_.tick;
   const contact::SignedDistance distance = contact::contacts_of_vertex(
-      view.side, pace_, index, at.nearest, view.delta, *memory_.scratch);
+      view.side, *pace_, index, at.nearest, view.delta, *memory_.scratch);
   at.nearest = distance.foot.triangle;
   at.lower_until = distance.value + view.odometer;
   out_.min_distance_m = smaller(out_.min_distance_m, distance.value * view.unit_m);
@@ -251,8 +251,8 @@ void Measuring::edge(std::uint32_t side, std::uint32_t index) noexcept {
   vertex(side, contact::vertex_of(view.side.points, name / 3, (name % 3 + 1) % 3));
   const double lower = edge_bound({side, index}, -view.side.target.surface.scale);
   if (lower > contact::kReach * view.delta) return;
-  contact::contacts_of_edge(view.side, view.points, pace_, name, lower < 0 ? -lower : 0, view.delta,
-                            *memory_.scratch);
+  contact::contacts_of_edge(view.side, view.points, *pace_, name, lower < 0 ? -lower : 0,
+                            view.delta, *memory_.scratch);
   for (const contact::FoundContact& found : memory_.scratch->found.all()) {
     out_.min_distance_m = smaller(out_.min_distance_m, found.distance * view.unit_m);
   }

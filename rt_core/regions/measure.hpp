@@ -2,7 +2,8 @@
 // Measures regions, vertices and edges for a contact search.
 #pragma once
 
-#include "rt_core/regions/contact_search.hpp"
+#include "rt_core/base/pace.hpp"
+#include "rt_core/regions/contact_memory.hpp"
 
 namespace palpate::regions {
 
@@ -34,7 +35,7 @@ class Explanation {
 
 class Measuring {
  public:
-  Measuring(ContactMemory& memory, Pace& pace, const Explanation& explanation,
+  Measuring(ContactMemory& memory, Pace*& pace, const Explanation& explanation,
             ContactSearchResult& out) noexcept
       : memory_(memory), pace_(pace), explanation_(explanation), out_(out) {}
 
@@ -74,7 +75,7 @@ class Measuring {
   void take(const ContactSource& source) noexcept;
 
   ContactMemory& memory_;
-  Pace& pace_;
+  Pace*& pace_;
   const Explanation& explanation_;
   ContactSearchResult& out_;
 };

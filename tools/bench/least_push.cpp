@@ -110,7 +110,8 @@ void measure(const SceneName& scene, int ticks) {
   const Body b(scene.b, kDeltaRel, bake::ForEngine::regions);
   const double delta = kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
   const std::vector<Pose> poses = motion(scene, a, b, delta, ticks);
-  Settings settings{.engine = EngineKind::regions, .delta_m = delta};
+  Settings settings{
+      .engine = EngineKind::regions, .delta_m = delta, .force_law = ForceLaw::penalty};
   const Limits limits{.nodes = 1, .contacts = 1u << 18, .clusters = 1u << 18};
   Bench penalty(a, b, settings);
   settings.force_law = ForceLaw::least_push;
