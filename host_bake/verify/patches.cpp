@@ -166,7 +166,7 @@ std::string wrong_normal(const Evidence& evidence, std::uint32_t index) {
   const auto& n = piece.patch_normal;
   const bool has_side =
       (piece.flags & static_cast<std::uint32_t>(image::PieceFlag::back_open)) == 0;
-  if (!has_side || evidence.image.header->format_minor < image::kPatchNormalsSince) return {};
+  if (!has_side) return {};
   const PatchNormal expected = patch_normal(evidence.points[index], patch(evidence, piece));
   double off = std::abs(static_cast<double>(piece.patch_cosine) -
                         static_cast<double>(expected.least_cosine));

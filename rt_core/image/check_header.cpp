@@ -52,8 +52,7 @@ bool numbers_sound(const Header& header) noexcept {
          within(header.stop_resolution, 0.0f, kLargest) &&
          within(header.stop_deviation_rel, 0.0f, kMaxLength) &&
          within(header.s0_min, 0.0f, kLargest) && within(header.partner_area, 0.0f, kLargest) &&
-         within(header.source_deviation_rel, 0.0f,
-                header.format_minor >= kSourceDeviationSince ? kMaxLength : 0.0f);
+         within(header.source_deviation_rel, 0.0f, kMaxLength);
 }
 
 // An image without the original surface says what it serves; one with it serves everything.

@@ -84,15 +84,15 @@ bool words_sound(const Piece& piece, bool is_newer) noexcept {
   return bits == 0;
 }
 
-// Version 1.0 did not say which side a patch faces, and that of an open surface has none.
-bool normal_sound(const Piece& piece, bool has_normals) noexcept {
+// The patch of an open surface has no side.
+bool normal_sound(const Piece& piece) noexcept {
   double squared_norm = 0;
   for (const float c : piece.patch_normal) {
     if (!within(c, -1.0f, 1.0f)) return false;
     squared_norm += static_cast<double>(c) * static_cast<double>(c);
   }
   if (squared_norm == 0) return piece.patch_cosine == 0;
-  return has_normals && piece.triangles > 0 && !flag(piece, PieceFlag::back_open) &&
+  return piece.triangles > 0 && !flag(piece, PieceFlag::back_open) &&
          squared_norm <= kMaxSquaredMean && within(piece.patch_cosine, -1.0f, 1.0f);
 }
 
@@ -138,7 +138,6 @@ Status check_levels(const ImageView& image) noexcept {
 Status check_pieces(const ImageView& image) noexcept {
   if (image.pieces.size() > kMaxPieces) return Status::image_over_limit;
   const bool is_newer = image.header->format_minor > kFormatMinor;
-  const bool has_normals = image.header->format_minor >= kPatchNormalsSince;
   Cursor cursor;
   for (const Piece& piece : image.pieces) {
     if (piece.hull_vertices > kMaxHullVertices) return Status::image_over_limit;
@@ -148,7 +147,7 @@ Status check_pieces(const ImageView& image) noexcept {
         !take_runs(image, piece, cursor)) {
       return Status::image_bad_piece;
     }
-    if (!numbers_sound(piece, level.resolution) || !normal_sound(piece, has_normals)) {
+    if (!numbers_sound(piece, level.resolution) || !normal_sound(piece)) {
       return Status::image_bad_float;
     }
   }

@@ -224,10 +224,8 @@ bool records_clear(const ImageView& image) noexcept {
 }
 
 bool ranks_sound(const ImageView& image) noexcept {
-  const bool ranked = image.header->format_minor >= kRanksSince;
-  const std::size_t ranks = ranked ? image.regions.size() : 1;
   for (const Region& region : image.regions) {
-    if (region.rank >= ranks) return false;
+    if (region.rank >= image.regions.size()) return false;
   }
   return true;
 }
@@ -235,8 +233,7 @@ bool ranks_sound(const ImageView& image) noexcept {
 // Whether each triangle leads to the first one of its component, and those from one to the next.
 bool components_sound(const ImageView& image) noexcept {
   const auto triangles = image.region_triangles;
-  const bool told = image.header->format_minor >= kComponentsSince;
-  const std::uint32_t count = told ? image.header->source_components : 1;
+  const std::uint32_t count = image.header->source_components;
   std::uint32_t first = count > 1 ? 0 : kNone;  // of the next component
   std::uint32_t seen = 0;
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {

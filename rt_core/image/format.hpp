@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The memory image, format version 1.6: what lies where. docs/FORMAT.md specifies it for readers in
+// The memory image, format version 2.0: what lies where. docs/FORMAT.md specifies it for readers in
 // other languages; this header is its C++ form and the only place that knows the layout.
 //
 // Little-endian; fixed-width types; every section starts on a 64-byte boundary; offsets count bytes
@@ -19,14 +19,8 @@
 namespace palpate::image {
 
 inline constexpr std::uint8_t kMagic[8] = {0x89, 'P', 'A', 'L', 'P', '\r', '\n', 0x1a};
-inline constexpr std::uint16_t kFormatMajor = 1;        ///< another major number is refused
-inline constexpr std::uint16_t kFormatMinor = 6;        ///< a newer minor number still loads
-inline constexpr std::uint16_t kPatchNormalsSince = 1;  ///< minor version
-inline constexpr std::uint16_t kSourceDeviationSince = 2;
-inline constexpr std::uint16_t kProximitySince = 3;
-inline constexpr std::uint16_t kRanksSince = 4;
-inline constexpr std::uint16_t kComponentsSince = 5;
-inline constexpr std::uint16_t kSurfaceSince = 6;
+inline constexpr std::uint16_t kFormatMajor = 2;  ///< another major number is refused
+inline constexpr std::uint16_t kFormatMinor = 0;  ///< a newer minor number still loads
 inline constexpr std::uint32_t kByteOrderMark = 0x01020304;
 inline constexpr std::size_t kAlignment = 64;
 inline constexpr std::uint32_t kNone = 0xffffffffu;  ///< "no such index"
@@ -218,7 +212,7 @@ struct Piece {
   /// is the piece's own.
   float culling_residual;
   /// Mean of the outward normals of the patch's triangles, weighted by their areas: the side it
-  /// faces. 0 where it has none: on free levels, where back_open, and in images of version 1.0.
+  /// faces. 0 where it has none: on free levels, where back_open,
   float patch_normal[3];
   float patch_cosine;  ///< least cosine between it and the normal of a triangle; 0 without one
   std::uint32_t reserved[3];

@@ -466,11 +466,11 @@ TEST(RegionsContained, side_of_a_point_is_that_of_the_shape) {
     regions::SideQuestion question{.point = p, .walk = {}};
     while (side == regions::Side::unknown) {
       Meter meter({.units = i % 3 == 0 ? Budget{}.units : i % 3 == 1 ? 7u : 1u}, {});
-      regions::Pace pace(meter);
+      Pace pace(meter);
       side = regions::side_of(regions::best_kernels(), body.view, question, pace);
     }
     Meter meter({}, {});
-    regions::Pace pace(meter);
+    Pace pace(meter);
     ASSERT_EQ(side, distance < 1 ? regions::Side::inside : regions::Side::outside) << i;
     inside += side == regions::Side::inside;
     const bool seen = regions::in_sight(regions::best_kernels(), body.view, last, p, pace);

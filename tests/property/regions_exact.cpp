@@ -230,7 +230,7 @@ TEST(RegionSearch, bounds_hold_wherever_the_budget_ends_it) {
     for (const float margin : {0.0f, -0.01f, 0.01f, -0.1f, -0.3f}) {
       for (const std::uint64_t units : {0u, 1u, 3u, 9u, 20u, 50u, 100000u}) {
         Meter meter({.units = units}, {});
-        regions::Pace pace(meter);
+        Pace pace(meter);
         const regions::Bounds found = regions::search(
             regions::best_kernels(), at.frame, *at.scratch, pace, region, {}, {0.5f, margin});
         expect_kept_or_beyond_rest(found, at.scratch->near, d);
@@ -277,7 +277,7 @@ TEST(RegionSearch, pairs_that_are_not_kept_are_beyond_rest) {
   SearchedPair at(kNear);
   for (const std::uint32_t region : {2u, 7u, 11u}) {
     Meter meter({}, {});
-    regions::Pace pace(meter);
+    Pace pace(meter);
     const regions::Bounds found = regions::search(regions::best_kernels(), at.frame, *at.scratch,
                                                   pace, region, {}, {2.0f, 0.02f});
     expect_pairs_bounded(at, kNear, region, found);
@@ -307,7 +307,7 @@ TEST(RegionSearch, all_along_its_course_what_is_not_kept_is_beyond_rest) {
       for (const float margin : {0.02f, 0.0f, -0.02f}) {
         for (const std::uint32_t room : {regions::kNearPairs, 4u}) {
           Meter meter({}, {});
-          regions::Pace pace(meter);
+          Pace pace(meter);
           regions::Reach reach = reach_along(at, course);
           reach.margin = margin;
           reach.room = room;
@@ -333,7 +333,7 @@ TEST(RegionSearch, is_given_up_where_more_comes_near_on_the_course_than_there_is
     std::uint64_t units = 0;
     const auto search = [&](const regions::Witness& witness) {
       Meter meter({}, {});
-      regions::Pace pace(meter);
+      Pace pace(meter);
       const regions::Bounds found = regions::search(regions::best_kernels(), at.frame, *at.scratch,
                                                     pace, region, witness, reach);
       units = meter.used();
@@ -369,13 +369,13 @@ std::uint64_t search_in_pieces(SearchedPair& at, std::uint32_t region, const reg
     const regions::Stand before = regions::stand_of(at.pair, region);
     at.move(motion(i));
     Meter meter({.units = piece}, {});
-    regions::Pace pace(meter);
+    Pace pace(meter);
     if (witness.known()) {
       float distances[regions::kBatch];
       at.scratch->batch_a[0] = witness.a;
       at.scratch->batch_b[0] = witness.b;
       Meter free({}, {});
-      regions::Pace unpaced(free);
+      Pace unpaced(free);
       regions::measure(regions::best_kernels(), at.frame, *at.scratch, unpaced, 1, distances);
       witness.distance = distances[0];
     }
@@ -402,7 +402,7 @@ TEST(RegionSearch, goes_on_where_it_was_left_and_does_nothing_twice) {
     for (const float margin : {0.0f, 0.01f, -0.1f}) {
       const regions::Reach reach{0.5f, margin};
       Meter meter({}, {});
-      regions::Pace pace(meter);
+      Pace pace(meter);
       regions::search(regions::best_kernels(), at.frame, *at.scratch, pace, region, {}, reach);
       for (const std::uint64_t piece : {3u, 40u}) {
         const double d = truth[region];
@@ -622,7 +622,7 @@ TEST(RegionSweep, bounds_all_regions_from_below_wherever_the_budget_ends_it) {
   std::vector<float> swept(truth.size());
   for (const std::uint64_t units : {0u, 5u, 50u, 100000u}) {
     Meter meter({.units = units}, {});
-    regions::Pace pace(meter);
+    Pace pace(meter);
     regions::sweep(regions::best_kernels(), at.frame, *at.scratch, pace, 0.1f, swept);
     int told_apart = 0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -643,7 +643,7 @@ TEST(RegionSearch, a_climb_ends_early_only_where_no_neighbour_is_nearer) {
   for (std::uint32_t region = 0; region < truth.size(); ++region) {
     for (std::uint32_t which = 0; which < effort(20u, 8u); ++which) {
       Meter meter({}, {});
-      regions::Pace pace(meter);
+      Pace pace(meter);
       regions::Witness w =
           regions::dive(regions::best_kernels(), at.frame, pace, region, 37 * which);
       for (int step = 0; step < 4; ++step) {
@@ -658,7 +658,7 @@ TEST(RegionSearch, a_climb_ends_early_only_where_no_neighbour_is_nearer) {
         const regions::Way way = regions::way_of(ways, 0, w);
         ASSERT_TRUE(way.is_of(w));
         Meter for_one_step({.units = 1}, {});
-        regions::Pace one_step(for_one_step);
+        Pace one_step(for_one_step);
         regions::Witness after = w;
         regions::climb(regions::best_kernels(), at.frame, *at.scratch, one_step, after);
         const std::uint64_t before = meter.used();
@@ -690,7 +690,7 @@ TEST(RegionSearch, a_climb_tells_what_is_near_in_the_regions_beside) {
   for (std::uint32_t region = 0; region < regions; ++region) {
     for (std::uint32_t which = 0; which < effort(20u, 8u); ++which) {
       Meter meter({}, {});
-      regions::Pace pace(meter);
+      Pace pace(meter);
       const regions::Witness from =
           regions::dive(regions::best_kernels(), at.frame, pace, region, 37 * which);
       regions::Witness alone = from, w = from;
@@ -718,7 +718,7 @@ TEST(RegionSearch, first_pair_and_climb_are_of_the_region_and_its_bound_holds) {
   SearchedPair at(kNear);
   const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
   Meter meter({}, {});
-  regions::Pace pace(meter);
+  Pace pace(meter);
   constexpr float kReach = 0.1f;
   int near = 0;
   for (std::uint32_t i = 0; i < truth.size(); ++i) {

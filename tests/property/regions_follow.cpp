@@ -342,7 +342,7 @@ TEST(RegionsFollow, units_are_kept_and_distances_are_of_the_present_pose) {
   const auto scratch = std::make_unique<regions::SearchScratch>();
   const auto measured = [&](const regions::Witness& pair) {
     Meter meter({}, {});
-    regions::Pace pace(meter);
+    Pace pace(meter);
     float distances[regions::kBatch];
     scratch->batch_a[0] = pair.a;
     scratch->batch_b[0] = pair.b;
@@ -389,7 +389,7 @@ TEST(RegionsFollow, dives_reach_every_leaf_of_a_region_at_the_cost_of_one_path) 
     std::set<std::uint32_t> reached;
     for (std::uint32_t which = 0; which < 4096; ++which) {
       Meter meter({}, {});
-      regions::Pace pace(meter);
+      Pace pace(meter);
       const regions::Witness w =
           regions::dive(*memory.kernels, memory.frames[0], pace, region, which);
       ASSERT_EQ(ball.region_triangles[w.a].region, region);

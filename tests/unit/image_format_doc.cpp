@@ -121,11 +121,13 @@ TEST(FormatPage, Section_and_its_slots_are_those_of_the_header) {
                                        PALPATE_FIELD(S, stride)};
   EXPECT_EQ(fields_of("## 3. Sections"), expected);
   const std::vector<std::size_t> strides = {
-      sizeof(image::Level),          sizeof(image::Piece),  sizeof(image::Vertex),
-      sizeof(std::uint32_t),         sizeof(std::uint32_t), sizeof(image::Triangle),
-      sizeof(image::VirtualFace),    sizeof(image::Vertex), sizeof(image::RegionNode),
-      sizeof(image::RegionTriangle), sizeof(image::Region), sizeof(image::ProximityGrid),
-      sizeof(std::uint32_t),         sizeof(std::uint32_t), sizeof(image::RegionRun)};
+      sizeof(image::Level),          sizeof(image::Piece),           sizeof(image::Vertex),
+      sizeof(std::uint32_t),         sizeof(std::uint32_t),          sizeof(image::Triangle),
+      sizeof(image::VirtualFace),    sizeof(image::Vertex),          sizeof(image::RegionNode),
+      sizeof(image::RegionTriangle), sizeof(image::Region),          sizeof(image::ProximityGrid),
+      sizeof(std::uint32_t),         sizeof(std::uint32_t),          sizeof(image::RegionRun),
+      sizeof(image::SurfaceVertex),  sizeof(image::SurfaceNormal),   sizeof(std::uint32_t),
+      sizeof(image::SurfaceRun),     sizeof(image::TriangleVertices)};
   std::vector<std::size_t> found;
   for (const auto& row : rows_of("## 3. Sections")) {
     if (row.size() == 4) found.push_back(std::stoul(row[2]));
@@ -161,6 +163,19 @@ TEST(FormatPage, Proximity_grid_and_runs_are_the_structs) {
   using R = image::RegionRun;
   const std::vector<Field> run = {PALPATE_FIELD(R, first), PALPATE_FIELD(R, count)};
   EXPECT_EQ(fields_of("### RegionRun"), run);
+}
+
+TEST(FormatPage, Surface_is_the_structs) {
+  using V = image::SurfaceVertex;
+  const std::vector<Field> vertex = {PALPATE_FIELD(V, position), PALPATE_FIELD(V, pseudonormal),
+                                     PALPATE_FIELD(V, first_normal), PALPATE_FIELD(V, hull_normals),
+                                     PALPATE_FIELD(V, concave_normals)};
+  EXPECT_EQ(fields_of("### SurfaceVertex"), vertex);
+  using R = image::SurfaceRun;
+  const std::vector<Field> run = {PALPATE_FIELD(R, first_vertex), PALPATE_FIELD(R, vertices),
+                                  PALPATE_FIELD(R, first_edge),   PALPATE_FIELD(R, edges),
+                                  PALPATE_FIELD(R, normal),       PALPATE_FIELD(R, normal_cos)};
+  EXPECT_EQ(fields_of("### SurfaceRun"), run);
 }
 
 TEST(FormatPage, Level_is_the_struct) {

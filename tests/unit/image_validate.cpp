@@ -92,23 +92,14 @@ TEST(Validate, View_points_into_the_bytes) {
   EXPECT_EQ(std::memcmp(view.pieces.data(), parts.pieces.data(), view.pieces.size_bytes()), 0);
 }
 
-/// Written by format version 1.0 once and for all: every later reader of 1.x loads it.
-TEST(Validate, Image_of_version_1_0_still_loads) {
+/// What it holds would be misread: it is to be baked anew.
+TEST(Validate, Image_of_version_1_0_is_refused) {
   std::ifstream in(PALPATE_TEST_DATA "/image_1_0.bin", std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   AlignedBytes bytes(text.size());
   std::memcpy(bytes.data(), text.data(), text.size());
   ImageView view;
-  ASSERT_EQ(validate(bytes, view), Status::ok);
-  EXPECT_EQ(walk_image(view), "");
-  EXPECT_EQ(view.header->format_minor, 0);
-  EXPECT_EQ(view.header->leaf_pieces, 3u);
-  EXPECT_EQ(view.header->source_triangles, 84u);
-  EXPECT_EQ(view.header->content_sha256[0], 0xe3);
-  EXPECT_EQ(view.levels.size(), 3u);
-  EXPECT_EQ(view.pieces.size(), 5u);
-  EXPECT_EQ(view.virtual_faces.size(), 1u);
-  EXPECT_EQ(view.vertices[0].support_area, 0.25f);
+  EXPECT_EQ(validate(bytes, view), Status::image_bad_version);
 }
 
 TEST(Validate, Refusal_leaves_the_view_alone) {
@@ -205,7 +196,7 @@ TEST(Validate, HeaderFields_out_of_range_are_refused) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
   const std::vector<std::function<void(H&)>> changes = {
-      [](H& h) { h.header_bytes = 511; },
+      [](H& h) { h.header_bytes = 575; },
       [](H& h) { h.flags = 16; },
       [](H& h) { h.flags = 2; },
       [](H& h) { h.flags = 4; },
@@ -216,10 +207,6 @@ TEST(Validate, HeaderFields_out_of_range_are_refused) {
       [](H& h) { h.source_deviation_rel = -0.1f; },
       [](H& h) { h.source_deviation_rel = 4.1f; },
       [](H& h) { h.source_deviation_rel = kNanF; },
-      [](H& h) {
-        h.format_minor = image::kSourceDeviationSince - 1;
-        h.source_deviation_rel = 0.01f;
-      },
       [](H& h) { h.reserved2[0] = 1; },
       [](H& h) { h.centre_m[1] = kNan; },
       [](H& h) { h.centre_m[2] = 1e16; },
@@ -399,8 +386,6 @@ TEST(Validate, PatchNormals_are_checked) {
   EXPECT_EQ(status(roles.triangle, 0.5f, 0.5f,
                    [&](ImageParts& p) { p.pieces[roles.triangle].flags |= 2; }),
             bad);  // an open surface has no side
-  EXPECT_EQ(status(roles.triangle, 0.5f, 0.5f, [](ImageParts& p) { p.header.format_minor = 0; }),
-            bad);  // version 1.0 kept them zero
 }
 
 /// The root of rich_parts() with a culling hull: its own vertices.

@@ -6,6 +6,7 @@ palpate_test(regions_near_pairs SOURCES unit/regions_near_pairs.cpp LIBS palpate
 palpate_test(regions_order SOURCES unit/regions_order.cpp LIBS palpate_rt)
 palpate_test(regions_lone SOURCES unit/regions_lone.cpp LIBS palpate_rt)
 palpate_test(regions_seeds SOURCES unit/regions_seeds.cpp LIBS palpate_rt)
+palpate_test(regions_explained SOURCES unit/regions_explained.cpp LIBS palpate_rt)
 palpate_test(regions_crowd SOURCES unit/regions_crowd.cpp LIBS palpate_rt)
 if(PALPATE_HOST)
   palpate_test(regions_look SOURCES unit/regions_look.cpp LIBS palpate_bake)

@@ -126,8 +126,6 @@ TEST(RegionImage, Damage_of_every_kind_is_refused_by_name) {
       {"empty run", Status::image_bad_index, [](Damaged& d) { d.runs()[0].count = 0; }},
       {"rank of no region", Status::image_bad_index,
        [](Damaged& d) { d.regions()[1].rank = 1u << 16; }},
-      {"ranks before there were any", Status::image_bad_index,
-       [](Damaged& d) { d.header().format_minor = image::kRanksSince - 1; }},
       {"reserved field used", Status::image_bad_section,
        [](Damaged& d) { d.nodes()[3].reserved[2] = 1; }},
   };
@@ -199,18 +197,6 @@ TEST(RegionImage, Components_that_lead_nowhere_are_refused) {
   one.triangles()[3].component = 2;
   ImageView out;
   EXPECT_EQ(one.check(out), Status::image_bad_index) << "of a single component";
-}
-
-TEST(RegionImage, Components_of_an_older_image_are_not_told_apart) {
-  Damaged image(apart());
-  ImageView view;
-  image.header().format_minor = image::kComponentsSince - 1;
-  EXPECT_EQ(image.check(view), Status::image_bad_index);
-  for (std::uint32_t i = 0; i < image.header().source_triangles; ++i) {
-    image.triangles()[i].component = 0;
-  }
-  ASSERT_EQ(image.check(view), Status::ok);
-  EXPECT_FALSE(regions::tells_components(view));
 }
 
 TEST(RegionImage, Random_damage_is_refused_or_harmless) {

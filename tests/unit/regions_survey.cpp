@@ -82,7 +82,7 @@ struct TwoBalls {
   /// Of all that a region has looked at spread over it, all of it measured.
   regions::Witness nearest_of_looks(std::uint32_t region) {
     Meter meter({}, {});
-    regions::Pace pace(meter);
+    Pace pace(meter);
     regions::Witness nearest;
     for (std::uint32_t look = 0; look < kept[region].seeds.dives; ++look) {
       regions::Looks looks;
