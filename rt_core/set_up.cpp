@@ -100,6 +100,17 @@ std::size_t regions_of(const Scene& scene) noexcept {
   return all;
 }
 
+/// What limits ask for, but a region has one contact at most, and so has a component that is deep
+/// inside; and what carries the push.
+std::size_t contacts_for(const Scene& scene, const Limits& limits, EngineKind kind) noexcept {
+  if (kind == EngineKind::levels) return limits.contacts;
+  std::size_t most = force::kMostCarrying;
+  for (const BodyPair& pair : scene.pairs) {
+    most += regions_of(scene, pair) + regions::kMostContained;
+  }
+  return smaller(limits.contacts, most);
+}
+
 /// What both sides of all pairs need.
 struct SideCounts {
   std::size_t regions = 0, vertices = 0, edges = 0;
@@ -173,7 +184,7 @@ Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKin
   out.engine = arena.array<Engine>(1);
   out.states = arena.array<levels::PairState>(scene.pairs.size());
   out.poses = arena.array<Pose>(scene.bodies.size());
-  const std::size_t contacts = limits.contacts;
+  const std::size_t contacts = contacts_for(scene, limits, kind);
   out.contacts = arena.array<Contact>(contacts);
   out.felt = arena.array<force::Felt>(contacts);
   out.ranking = arena.array<force::Ranked>(contacts);

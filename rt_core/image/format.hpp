@@ -88,8 +88,9 @@ enum class SectionId : std::uint32_t {
   surface_edges = 17,      ///< u32, 3 * triangle + side; convex edges, region by region
   surface_runs = 18,       ///< SurfaceRun; of each region
   triangle_vertices = 19,  ///< TriangleVertices; of each region triangle
+  // 20 is for later minor versions; it is empty so far.
 };
-inline constexpr std::size_t kSectionSlots = 20;
+inline constexpr std::size_t kSectionSlots = 21;
 
 enum class HeaderFlag : std::uint32_t {
   repaired = 1u << 0,       ///< the source was repaired before baking
@@ -145,7 +146,7 @@ struct Header {
   std::uint32_t reserved1;
 
   Section sections[kSectionSlots];
-  std::uint8_t reserved2[40];
+  std::uint8_t reserved2[24];
 };
 static_assert(sizeof(Header) == 576);
 static_assert(offsetof(Header, content_sha256) == 32);

@@ -183,19 +183,6 @@ TEST(ContactMechanics, a_wedge_in_a_groove_feels_both_walls) {
   expect_forces(tool, base, pressed, both_walls, 2e-2);
 }
 
-TEST(ContactMechanics, a_narrow_wedge_is_pushed_out_of_the_groove_the_deeper_the_more) {
-  const BakedBody tool = baked(wedge(.0046)), base = baked(groove());
-  BakedScene scene({tool.view, base.view}, {{0, 1}}, kSettings);
-  double last_N = 0;
-  for (double z = 4e-4; z > -2e-3; z -= 2 * kStep) {
-    const Pose poses[2] = {{{0, .0007, -.02 + z}, {}}, {}};
-    const double up_N = tick_or_fail(*scene.engine, poses).wrench.force_N.z;
-    EXPECT_GE(up_N, last_N - 2e-3) << z;
-    last_N = up_N;
-  }
-  EXPECT_GT(last_N, 3 * kStiffness * kDelta);
-}
-
 TEST(ContactMechanics, what_a_does_to_b_b_does_to_a) {
   const BakedBody a = baked(quartered(block(.016, .012, .018), 1)), b = baked(ball(12, 16, .008));
   BakedScene one({a.view, b.view}, {{0, 1}}, kSettings);

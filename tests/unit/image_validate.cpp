@@ -158,7 +158,8 @@ TEST(Validate, Envelope_faults_have_their_names) {
   EXPECT_EQ(status_with_header([](H& h) { h.magic[0] = 'P'; }), Status::image_bad_magic);
   EXPECT_EQ(status_with_header([](H& h) { h.byte_order_mark = 0x04030201; }),
             Status::image_bad_byte_order);
-  EXPECT_EQ(status_with_header([](H& h) { h.format_major = 2; }), Status::image_bad_version);
+  EXPECT_EQ(status_with_header([](H& h) { h.format_major = image::kFormatMajor + 1; }),
+            Status::image_bad_version);
   EXPECT_EQ(status_with_header([](H& h) { h.format_major = 0; }), Status::image_bad_version);
   EXPECT_EQ(status_with_header([](H& h) { h.total_bytes += 64; }), Status::image_bad_size);
 }
@@ -169,7 +170,7 @@ TEST(Validate, NewerMinorVersion_loads_and_its_unknown_parts_are_ignored) {
   EXPECT_EQ(status_with_header([](H& h) {
               h.format_minor = image::kFormatMinor + 1;
               h.reserved0 = h.reserved1 = 7;
-              h.reserved2[39] = 1;
+              h.reserved2[23] = 1;
               h.flags |= 0x80000000u;
             }),
             Status::ok);
@@ -179,7 +180,7 @@ TEST(Validate, NewerMinorVersion_with_a_further_section_loads) {
   AlignedBytes bytes = seal(rich_parts());
   image::Header header;
   std::memcpy(&header, bytes.data(), sizeof(header));
-  header.sections[15] = {bytes.size(), 5, 12};
+  header.sections[20] = {bytes.size(), 5, 12};
   bytes.resize(bytes.size() + 64);
   header.total_bytes = bytes.size();
   std::memcpy(bytes.data(), &header, sizeof(header));
