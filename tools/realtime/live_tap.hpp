@@ -25,8 +25,8 @@ struct LiveContact {
 
 /// One tick's contacts and what is certain about them.
 struct LiveTick {
-  Pose tool;                ///< at which they were found: a simulated tool's where there is one
-  Certificate certificate;  ///< of this tick
+  Pose tool;                  ///< at which they were found: a simulated tool's where there is one
+  Certificate certificate;    ///< of this tick
   double min_distance_m = 0;  ///< NaN where there are none
   std::uint32_t found = 0;
   std::uint32_t shown = 0;  ///< of `contacts`; spread evenly over those found
