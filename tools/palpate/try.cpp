@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // palpate try: two meshes, a motion that touches, a run and its report, in one command.
-#include <spawn.h>
-
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -11,12 +8,11 @@
 #include <vector>
 
 #include "config/scene.hpp"
+#include "tools/palpate/browser.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/new_scene.hpp"
 #include "tools/palpate/report_page.hpp"
 #include "tools/palpate/touch_motion.hpp"
-
-extern char** environ;
 
 namespace palpate::cli {
 namespace {
@@ -81,17 +77,6 @@ bool write_report(const TryOptions& options) {
   return true;
 }
 
-/// Whoever sits at a screen sees it at once.
-void open_page(const fs::path& page) {
-  const bool screen =
-      std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
-  if (!screen) return;
-  std::string opener = "xdg-open", file = page.string();
-  char* const arguments[] = {opener.data(), file.data(), nullptr};
-  pid_t process = 0;
-  ::posix_spawnp(&process, opener.c_str(), nullptr, nullptr, arguments, environ);
-}
-
 void try_meshes(TryOptions options) {
   if (options.folder.empty()) {
     options.folder = "try-" + fs::path(options.scene.tool).stem().string() + "-" +
@@ -107,7 +92,7 @@ void try_meshes(TryOptions options) {
                "--seconds", seconds, "-o", options.file("run.trace").string()});
   if (!write_report(options)) return;
   std::cout << "\nReport: " << fs::absolute(options.file("report.html")).string() << "\n";
-  if (!options.no_browser) open_page(options.file("report.html"));
+  if (!options.no_browser) open_on_screen(options.file("report.html").string());
 }
 
 }  // namespace
