@@ -97,6 +97,13 @@ export class Chromium {
     await this.drawn();
   }
 
+  /// type: 'mousePressed', 'mouseMoved', 'mouseReleased' or 'mouseWheel'.
+  async mouse(type, x, y, { button = 'none', shift = false, deltaY } = {}) {
+    const buttons = { none: 0, left: 1, right: 2 }[type === 'mouseReleased' ? 'none' : button];
+    const wheel = deltaY === undefined ? {} : { deltaX: 0, deltaY };
+    await this.send('Input.dispatchMouseEvent', { type, x, y, button, buttons, modifiers: shift ? 8 : 0, clickCount: 1, ...wheel });
+  }
+
   async resize(width, height) {
     await this.send('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: width < 600 });
     await this.drawn();
