@@ -198,7 +198,9 @@ nlohmann::ordered_json scene_json(const config::Scene& scene) {
   const Images images = open_images(scene);
   std::vector<PieceShapes> no_pieces;
   const Json image_list = images_json(images, std::vector<Wanted>(images.files.size()), no_pieces);
-  const ReportScene still = {.scene = scene, .track = {.ticks = {{}}, .changes = {}}};
+  ReportScene still;
+  still.scene = scene;
+  still.track.ticks.emplace_back();
   return {{"delta_m", scene.settings.delta_m},
           {"tool", scene.tool},
           {"images", image_list},

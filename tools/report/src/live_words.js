@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A frame in words.
-import { duration, millimetres, number } from './units.js';
+import { duration, length, number } from './units.js';
 
 const kRuledOut = 0;
 const kFound = 2;
@@ -21,14 +21,15 @@ export function forceWords(frame) {
 export function contactWords(frame) {
   if (frame.found === 0) return 'none';
   const shown = frame.contacts.length < frame.found ? `, ${frame.contacts.length} drawn` : '';
-  return `${count(frame.found)}${shown}; least distance ${millimetres(frame.least_m)}`;
+  const least = frame.least_m < 0 ? `overlap by ${length(-frame.least_m)}` : `least distance ${length(frame.least_m)}`;
+  return `${count(frame.found)}${shown}; ${least}`;
 }
 
 export function certificateWords(frame, delta_m) {
   const bound = frame.force_bound_N > 0 ? `, force within ${number(frame.force_bound_N, 2)} N` : '';
   const cut = frame.cut ? '; cut by the budget' : frame.onReserve ? '; on its reserve' : '';
-  if (frame.contact === kFound) return `distance within ${millimetres(frame.error_m)}${bound}${cut}`;
-  return (frame.contact === kRuledOut ? `nothing is nearer than ${millimetres(delta_m)}` : 'a contact is not ruled out') + cut;
+  if (frame.contact === kFound) return `distance within ${length(frame.error_m)}${bound}${cut}`;
+  return (frame.contact === kRuledOut ? `nothing is nearer than ${length(delta_m)}` : 'a contact is not ruled out') + cut;
 }
 
 export function deadlineWords(frame) {

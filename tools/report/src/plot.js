@@ -4,6 +4,7 @@ import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import { number } from './units.js';
 
+const kMarkOfHeight = 0.16;
 const rebuilds = [];
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const colourOf = (index) => style(`--series-${index % 8}`);
@@ -80,6 +81,8 @@ function drawLines(u, lines) {
   ctx.strokeStyle = ctx.fillStyle = style('--quiet');
   ctx.lineWidth = devicePixelRatio;
   ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
+  ctx.textAlign = 'left';
+  ctx.textBaseline = 'alphabetic';
   ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
   for (const { y, name } of lines) {
     const at = u.valToPos(y, 'y', true);
@@ -92,6 +95,7 @@ function drawLines(u, lines) {
   ctx.restore();
 }
 
+/// In the upper margin of what they concern, and not across it.
 function drawMarks(u, marks) {
   const { ctx, bbox } = u;
   ctx.save();
@@ -102,7 +106,7 @@ function drawMarks(u, marks) {
     ctx.strokeStyle = style(colour);
     ctx.beginPath();
     ctx.moveTo(at, bbox.top);
-    ctx.lineTo(at, bbox.top + bbox.height);
+    ctx.lineTo(at, bbox.top + kMarkOfHeight * bbox.height);
     ctx.stroke();
   }
   ctx.restore();
@@ -111,7 +115,7 @@ function drawMarks(u, marks) {
 /// Adds a plot to `host`.
 /// series: [{name, values, x?, kind: 'line' | 'joined' | 'points' | 'steps', colour?, hollow?, size?, dash?, width?}]; with `x` of
 /// their own, or all over the common x.
-/// lines: [{y, name}], across the plot and always in sight; marks: () => [{x, colour}], upright.
+/// lines: [{y, name}], across the plot and always in sight; marks: () => [{x, colour}], at the upper edge.
 /// compact: no names of axes or values. span: () => [from, to] of x; absent: all of it.
 /// Returns {show(x)}: moves the line that marks the page's frame; {setTable([x, ...values])}: other data of the same series.
 export function addPlot(host, { title, x, series, xLabel, yLabel, logX, logY, height = 240, onClick, onPoint, lines = [], marks, compact, span }) {
@@ -137,7 +141,7 @@ export function addPlot(host, { title, x, series, xLabel, yLabel, logX, logY, he
   const yRange = (_, low, high) => {
     const most = Math.max(high ?? 0, ...lines.map((line) => line.y));
     const least = Math.min(low ?? 0, 0);
-    return most > least ? [least, most + 0.08 * (most - least)] : [0, 1];
+    return most > least ? [least, most + 0.2 * (most - least)] : [0, 1];
   };
   const yScale = () => (lines.length > 0 || compact ? { range: yRange } : scale(logY));
   const xScale = () => (span ? { range: () => span() } : {});
