@@ -93,7 +93,7 @@ TEST_F(LiveProcess, mouse_pulls_the_tool_against_the_other_within_the_limits) {
   test::LiveRun run(
       command({"--device", "mouse", "--view", "--no-browser", "--seconds", "3", "--json"}));
   const std::string said = run.address();
-  double most_N = 0, least_m = 0, before_m = 0, fastest_m = 0;
+  double most_N = 0, least_m = 0;
   if (!said.empty()) {
     const LiveAddress address(said);
     LiveClient page(address.port);
@@ -104,8 +104,6 @@ TEST_F(LiveProcess, mouse_pulls_the_tool_against_the_other_within_the_limits) {
       if (frame.state == 2) page.send(LiveClient::masked(2, live::encode_lead({{-100, 0, 0}, {}})));
       most_N = std::max(most_N, frame.force_N);
       least_m = std::min(least_m, frame.moved_m);
-      fastest_m = std::max(fastest_m, std::abs(frame.moved_m - before_m));
-      before_m = frame.moved_m;
       if (frame.ended) break;
     }
   }
@@ -114,7 +112,7 @@ TEST_F(LiveProcess, mouse_pulls_the_tool_against_the_other_within_the_limits) {
   ASSERT_TRUE(outcome.status == 0 || outcome.status == 5) << outcome.err;
   const json j = json::parse(outcome.out);
   if (!j["faults"].empty()) GTEST_SKIP() << "the machine is too busy to hold the loop up";
-  EXPECT_GT(most_N, 0.05);
+  EXPECT_GT(most_N, 0.02);
   EXPECT_LE(j["force_N"]["max"].get<double>(), 0.5 * (1 + 1e-9));
   EXPECT_LT(least_m, -0.0002);  // it has come down,
   EXPECT_GT(least_m, -0.004);   // and is held off
@@ -155,6 +153,32 @@ TEST_F(LiveProcess, port_that_is_taken_is_said_with_its_number) {
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.err.find("cannot serve the live view"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("port " + port), std::string::npos) << outcome.err;
+}
+
+TEST_F(LiveProcess, browser_is_led_to_the_page_by_a_file_that_others_cannot_read) {
+  // It writes down what it was told, in place of a browser.
+  const auto opener = folder_.write(
+      "xdg-open",
+      "#!/bin/sh\n(stat -c %a \"$1\"; cat \"$1\") > \"$(dirname \"$0\")/opened.part\"\n"
+      "mv \"$(dirname \"$0\")/opened.part\" \"$(dirname \"$0\")/opened\"\n");
+  std::filesystem::permissions(opener, std::filesystem::perms::owner_all);
+  std::vector<std::string> words = command({"--view", "--seconds", "0.2"});
+  words.insert(words.begin(), {"/usr/bin/env", "DISPLAY=:0",
+                               "PATH=" + folder_.path().string() + ":/usr/bin:/bin"});
+  test::LiveRun run(words);
+  const std::string said = run.address();
+  if (!said.empty()) {
+    const LiveAddress address(said);
+    LiveClient page(address.port);  // the run begins now, and not after ten seconds
+    ASSERT_EQ(page.upgrade(address), 101);
+    while (page.message()) {
+    }
+  }
+  const test::Outcome outcome = run.finish();
+  if (no_page(outcome.err)) GTEST_SKIP() << "no node to build the page with";
+  const std::string opened = test::read_file(folder_.path() / "opened");
+  EXPECT_EQ(opened.rfind("600\n", 0), 0u) << opened;
+  EXPECT_NE(opened.find("url=" + said), std::string::npos) << opened;
 }
 
 TEST_F(LiveProcess, ports_that_there_are_not_are_usage_errors) {

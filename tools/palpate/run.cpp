@@ -45,7 +45,8 @@ struct RunOptions {
   std::filesystem::path firmware;
   std::filesystem::path poses;  ///< empty: the scene's [[mock.path]]
   std::string trace;
-  std::optional<std::uint16_t> view;  ///< port of the live page, 0: any; absent: no page
+  bool view = false;            ///< a live page
+  std::uint16_t view_port = 0;  ///< 0: any
   bool no_browser = false;
   realtime::RealtimeOptions realtime;
   bool json = false;
@@ -239,8 +240,8 @@ void run(RunOptions options) {
   std::unique_ptr<LiveView> view;
   if (options.view) {
     view = std::make_unique<LiveView>(
-        stable.scene,
-        LiveViewOptions{*options.view, !options.no_browser, options.device, rate_Hz, made.lead});
+        stable.scene, LiveViewOptions{options.view_port, !options.no_browser, options.device,
+                                      rate_Hz, made.lead});
   }
   QueryStack queries(stable.scene, engine.engine(), engine.start_poses(), rate_Hz,
                      view ? view->contacts() : ContactTap{});
@@ -301,11 +302,10 @@ void add_run(CLI::App& app) {
   command->add_option("--poses", options->poses,
                       "motion of the mock hand (POSES.csv), in place of the scene's [[mock.path]]; "
                       "it starts over where --seconds is longer");
-  command
-      ->add_flag(
-          "--view{0}", options->view,
-          "show the run in a page of this machine while it goes on; --view=PORT: at this port")
-      ->check(CLI::Range(0, 65535));
+  CLI::Option* const view = command->add_flag(
+      "--view{0}", options->view_port,
+      "show the run in a page of this machine while it goes on; --view=PORT: at this port");
+  view->check(CLI::Range(0, 65535));
   command->add_flag("--no-browser", options->no_browser, "with --view: only say the address");
   command->add_option("-o,--output", options->trace, "write a record of each tick to this file");
   command
@@ -317,7 +317,10 @@ void add_run(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", options->json, "print the summary as JSON");
   command->add_flag("--quiet", options->quiet, "no progress");
-  command->callback([options] { run(*options); });
+  command->callback([options, view] {
+    options->view = view->count() > 0;
+    run(*options);
+  });
 }
 
 }  // namespace palpate::cli

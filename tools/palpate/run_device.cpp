@@ -2,6 +2,7 @@
 #include "tools/palpate/run_device.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "hal/mock/device.hpp"
 #include "tools/palpate/command.hpp"
@@ -14,16 +15,18 @@ namespace {
 /// Readings of the mock device for each tick, so that what a tick uses is at most half a period
 /// old.
 constexpr double kMockReadingsPerTick = 2.0;
-/// No hand is faster, and a small tool is not led through more than so many of its radii a second.
+/// No hand is faster.
 constexpr double kFastestHand_m_per_s = 1.0;
-constexpr double kRadiiPerSecond = 10;
-/// The mouse pulls with so much of what a device may push back with, and no harder than presses the
-/// tool in by this share of its radius: who pulls harder is let through, by any device.
-constexpr double kPullOfMost = 0.8;
-constexpr double kPressedInOfRadius = 0.1;
+/// How deep the mouse may press, in radii of the smallest body: what goes much deeper comes out on
+/// the other side, with any device.
+constexpr double kDeepestOfRadius = 0.2;
+/// The mouse's share of the contacts' force there.
+constexpr double kPullOfContact = 0.25;
 constexpr double kFastestTurn_rad_per_s = 6;
 constexpr double kFarthestTurn_rad = 0.5;
 
+/// The contacts stop the hand's mass within that depth d although it pulls: with F the force there,
+/// m v^2 / 2 + F d / 4 = F d / 2.
 hal::mock::FollowLimits mouse_limits(const config::Scene& scene, double radius_m) {
   const config::MockHand& hand = scene.hand;
   if (!(hand.grip_N_per_m > 0) || !(hand.grip_Nm_per_rad > 0)) {
@@ -33,13 +36,15 @@ hal::mock::FollowLimits mouse_limits(const config::Scene& scene, double radius_m
   const hal::mock::Options device;
   const double most_N = std::min(scene.settings.max_force_N, device.max_force_N);
   const double most_Nm = std::min(scene.settings.max_torque_Nm, device.max_torque_Nm);
-  const double press_N = kPressedInOfRadius * radius_m * scene.settings.stiffness_N_per_m;
-  const double pull_N = std::min(kPullOfMost * most_N, press_N);
+  const double deepest_m = kDeepestOfRadius * radius_m;
+  const double contact_N = std::min(most_N, scene.settings.stiffness_N_per_m * deepest_m);
+  const double pull_N = kPullOfContact * contact_N;
+  const double stopped_m_per_s = std::sqrt(contact_N * deepest_m / (2 * hand.mass_kg));
   hal::mock::FollowLimits limits;
-  limits.speed_m_per_s = std::min(kFastestHand_m_per_s, kRadiiPerSecond * radius_m);
+  limits.speed_m_per_s = std::min(kFastestHand_m_per_s, stopped_m_per_s);
   limits.turn_rad_per_s = kFastestTurn_rad_per_s;
   limits.ahead_m = pull_N / hand.grip_N_per_m;
-  limits.ahead_rad = std::min(kPullOfMost * most_Nm / hand.grip_Nm_per_rad, kFarthestTurn_rad);
+  limits.ahead_rad = std::min(kPullOfContact * most_Nm / hand.grip_Nm_per_rad, kFarthestTurn_rad);
   return limits;
 }
 
@@ -65,7 +70,11 @@ RunDevice make_run_device(const RunDeviceOptions& options, const config::Scene& 
   RunDevice out;
   if (options.name == "mouse") {
     hal::mock::Options led;
-    led.led = mouse_limits(scene, engine.images()[scene.tool].header->radius_m);
+    double radius_m = engine.images()[scene.tool].header->radius_m;
+    for (const ImageView& body : engine.images()) {
+      radius_m = std::min<double>(radius_m, body.header->radius_m);
+    }
+    led.led = mouse_limits(scene, radius_m);
     auto mock = make_mock(options, scene, led);
     out.lead = [hand = mock.get()](const Pose& to) { hand->lead(to); };
     out.device = std::move(mock);
