@@ -12,10 +12,12 @@ extern char** environ;
 
 namespace palpate::cli {
 
+bool has_screen() {
+  return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+}
+
 bool open_on_screen(const std::string& what) {
-  const bool screen =
-      std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
-  if (!screen) return false;
+  if (!has_screen()) return false;
   std::string opener = "xdg-open", argument = what;
   char* const arguments[] = {opener.data(), argument.data(), nullptr};
   pid_t process = 0;

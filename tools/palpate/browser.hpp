@@ -7,6 +7,9 @@
 
 namespace palpate::cli {
 
+/// Whether there is a screen to open anything on.
+[[nodiscard]] bool has_screen();
+
 /// Opens a file or an address with the desktop's own program. False where there is no screen or no
 /// such program. Does not wait for it.
 bool open_on_screen(const std::string& what);

@@ -72,7 +72,7 @@ void LiveView::end() {
 
 void LiveView::announce() {
   std::cerr << "Live view: " << server_->address() << "\n" << std::flush;
-  if (!browser_) return;
+  if (!browser_ || !has_screen()) return;
   try {
     signpost_.emplace(server_->address());
   } catch (const std::system_error&) {
