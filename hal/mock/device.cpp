@@ -106,8 +106,8 @@ void MockDevice::period(std::uint64_t time_ns) noexcept {
 
 void MockDevice::advance_hand(const Wrench& wrench) noexcept {
   if (!follower_) return hand_->advance(wrench);
-  Pose to;
-  if (led_to_.read(to)) follower_->lead(to);
+  Lead lead;
+  if (leads_.read(lead)) follower_->lead(lead);
   hand_->advance(wrench, follower_->advance(hand_->pose(), 1 / options_.rate_Hz));
 }
 

@@ -55,9 +55,8 @@ class MockDevice final : public Device {
     return faults_.load(std::memory_order_relaxed);
   }
 
-  /// Where the tool is led, with Options::led. The pose must be finite, its quaternion not zero.
-  /// Wait-free, any one thread.
-  void lead(const Pose& to) noexcept { led_to_.write(to); }
+  /// With Options::led. Wait-free, any one thread.
+  void lead(const Lead& lead) noexcept { leads_.write(lead); }
 
   /// Virtual time only: lives through every device period up to and including a time. The first
   /// call sets time zero of the hand and publishes the first reading.
@@ -92,7 +91,7 @@ class MockDevice final : public Device {
   DeviceCommand command_;  ///< the last one taken
   Mailbox<DeviceState> states_;
   Mailbox<DeviceCommand> commands_;
-  Mailbox<Pose> led_to_;
+  Mailbox<Lead> leads_;
   std::atomic<std::uint32_t> faults_{kNoDeviceFault};
   std::atomic<bool> stopping_{false};
   std::thread thread_;

@@ -18,13 +18,20 @@ Vec3d at_most(Vec3d v, double length) {
 
 Follower::Follower(const FollowLimits& limits, const Pose& start) noexcept
     : limits_(limits), to_(start), at_(start) {
-  lead(start);
+  lead({true, start});
   at_ = to_;
 }
 
-void Follower::lead(const Pose& to) noexcept { to_ = {to.position_m, normalised(to.orientation)}; }
+void Follower::lead(const Lead& lead) noexcept {
+  held_ = lead.held;
+  if (held_) to_ = {lead.to.position_m, normalised(lead.to.orientation)};
+}
 
 Target Follower::advance(const Pose& tool, double dt_s) noexcept {
+  if (!held_) {
+    at_ = tool;
+    return {at_, {}};
+  }
   const double rate = 1 / std::max(limits_.settle_s, dt_s);
   Target target;
   Twist& twist = target.twist;

@@ -9,6 +9,12 @@
 
 namespace palpate::hal::mock {
 
+/// What a led hand is told.
+struct Lead {
+  bool held = true;  ///< false: the hand lets go, and only damps
+  Pose to;           ///< finite, its quaternion not zero
+};
+
 /// All > 0.
 struct FollowLimits {
   double speed_m_per_s = 1.0;
@@ -25,14 +31,14 @@ class Follower {
  public:
   Follower(const FollowLimits& limits, const Pose& start) noexcept;
 
-  /// From now on the tool is led here. The pose must be finite, its quaternion not zero.
-  void lead(const Pose& to) noexcept;
+  void lead(const Lead& lead) noexcept;
 
   /// Moves on by dt_s. @param tool  where it is now. O(1)
   [[nodiscard]] Target advance(const Pose& tool, double dt_s) noexcept;
 
  private:
   FollowLimits limits_;
+  bool held_ = true;
   Pose to_;
   Pose at_;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The live page's messages and words, without a browser.
 import assert from 'node:assert/strict';
-import { leadMessage, readFrame } from '../../tools/report/src/live_data.js';
+import { leadMessage, letGoMessage, readFrame } from '../../tools/report/src/live_data.js';
 import { certificateWords, contactWords, deadlineWords, stateWords } from '../../tools/report/src/live_words.js';
 
 const kHead = 43;
@@ -35,6 +35,10 @@ assert.equal(lead.getUint32(0, true), 1);
 assert.equal(lead.getFloat64(8, true), 1);
 assert.equal(lead.getFloat64(32, true), 0.9);  // w comes first
 assert.equal(lead.getFloat64(40, true), 0.1);
+
+const letGo = new DataView(letGoMessage());
+assert.equal(letGo.byteLength, 8);
+assert.equal(letGo.getUint32(0, true), 2);
 
 const names = { states: ['disconnected', 'armed', 'rendering', 'fault', 'homing'], faults: ['stale_state', 'bad_state'] };
 assert.equal(stateWords({ state: 2, faults: 0 }, names), 'rendering');

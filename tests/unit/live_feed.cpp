@@ -45,8 +45,9 @@ class LiveFeed : public ::testing::Test {
   }
 
   realtime::LiveTap tap_;
-  std::vector<Pose> led_;
-  Feed feed_{tap_, 1000, {{1, 0, 0}, {}}, [this](const Pose& to) { led_.push_back(to); }};
+  std::vector<hal::mock::Lead> led_;
+  Feed feed_{
+      tap_, 1000, {{1, 0, 0}, {}}, [this](const hal::mock::Lead& lead) { led_.push_back(lead); }};
   std::uint64_t ticks_ = 0;
   std::uint64_t seen_ = 0;
 };
@@ -103,10 +104,13 @@ TEST_F(LiveFeed, missed_periods_and_faults_are_marked_once) {
 }
 
 TEST_F(LiveFeed, lead_is_in_world_axes_and_nonsense_disconnects) {
-  EXPECT_TRUE(feed_.message(encode_lead({{0.5, 0, 0}, {}})));
+  EXPECT_TRUE(feed_.message(encode_lead({true, {{0.5, 0, 0}, {}}})));
   ASSERT_EQ(led_.size(), 1u);
-  EXPECT_EQ(led_[0].position_m, (Vec3d{1.5, 0, 0}));
+  EXPECT_EQ(led_[0].to.position_m, (Vec3d{1.5, 0, 0}));
   EXPECT_FALSE(feed_.message({}));
+  ASSERT_EQ(led_.size(), 1u);
+  feed_.left();
+  EXPECT_FALSE(led_.back().held);
   Feed deaf(tap_, 1000, {}, {});
   EXPECT_FALSE(deaf.message(encode_lead({})));
 }

@@ -13,7 +13,7 @@ namespace palpate::live {
 namespace {
 
 std::vector<std::byte> with(std::size_t at, double value) {
-  std::vector<std::byte> bytes = encode_lead({{0.1, -0.2, 0.3}, {0.6, 0, 0.8, 0}});
+  std::vector<std::byte> bytes = encode_lead({true, {{0.1, -0.2, 0.3}, {0.6, 0, 0.8, 0}}});
   std::memcpy(bytes.data() + 8 + 8 * at, &value, sizeof value);
   return bytes;
 }
@@ -25,11 +25,12 @@ std::vector<std::byte> with_word(std::size_t at, std::uint32_t value) {
 }
 
 TEST(LeadMessage, whole_one_is_understood) {
-  const auto pose = parse_lead(encode_lead({{0.1, -0.2, 0.3}, {0.6, 0, 0.8, 0}}));
-  ASSERT_TRUE(pose);
-  EXPECT_EQ(pose->position_m, (Vec3d{0.1, -0.2, 0.3}));
-  EXPECT_NEAR(pose->orientation.w, 0.6, 1e-15);
-  EXPECT_NEAR(pose->orientation.y, 0.8, 1e-15);
+  const auto lead = parse_lead(encode_lead({true, {{0.1, -0.2, 0.3}, {0.6, 0, 0.8, 0}}}));
+  ASSERT_TRUE(lead);
+  EXPECT_TRUE(lead->held);
+  EXPECT_EQ(lead->to.position_m, (Vec3d{0.1, -0.2, 0.3}));
+  EXPECT_NEAR(lead->to.orientation.w, 0.6, 1e-15);
+  EXPECT_NEAR(lead->to.orientation.y, 0.8, 1e-15);
 }
 
 TEST(LeadMessage, any_other_length_is_refused) {
@@ -39,6 +40,19 @@ TEST(LeadMessage, any_other_length_is_refused) {
   for (std::size_t size = 0; size <= bytes.size(); ++size) {
     EXPECT_EQ(parse_lead(std::span(bytes).first(size)).has_value(), size == kLeadBytes) << size;
   }
+}
+
+TEST(LeadMessage, letting_go_is_understood_and_has_no_pose) {
+  std::vector<std::byte> bytes = encode_lead({false, {}});
+  ASSERT_EQ(bytes.size(), kLetGoBytes);
+  const auto lead = parse_lead(bytes);
+  ASSERT_TRUE(lead);
+  EXPECT_FALSE(lead->held);
+  bytes[0] = std::byte{1};
+  EXPECT_FALSE(parse_lead(bytes));
+  bytes = encode_lead({});
+  bytes[0] = std::byte{2};
+  EXPECT_FALSE(parse_lead(bytes));
 }
 
 TEST(LeadMessage, other_words_are_refused) {
@@ -62,7 +76,7 @@ TEST(LeadMessage, what_is_too_far_or_no_rotation_is_refused) {
   EXPECT_FALSE(parse_lead(with(5, 0.81)));
   const auto nearly = parse_lead(with(5, 0.8005));
   ASSERT_TRUE(nearly);
-  const Quat& q = nearly->orientation;
+  const Quat& q = nearly->to.orientation;
   EXPECT_NEAR(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z, 1, 1e-12);
 }
 

@@ -101,7 +101,8 @@ TEST_F(LiveProcess, mouse_pulls_the_tool_against_the_other_within_the_limits) {
     while (const auto message = page.message()) {
       const Frame frame = frame_of(*message);
       // As far as a mouse can jump: through the other cube and far behind it.
-      if (frame.state == 2) page.send(LiveClient::masked(2, live::encode_lead({{-100, 0, 0}, {}})));
+      if (frame.state == 2)
+        page.send(LiveClient::masked(2, live::encode_lead({true, {{-100, 0, 0}, {}}})));
       most_N = std::max(most_N, frame.force_N);
       least_m = std::min(least_m, frame.moved_m);
       if (frame.ended) break;

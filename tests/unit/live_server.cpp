@@ -32,7 +32,8 @@ class Numbers final : public Source {
     return bytes.size() == 8;
   }
   std::atomic<std::size_t> frame_bytes{100};
-  std::atomic<int> rounds{0}, messages{0};
+  void left() override { ++lefts; }
+  std::atomic<int> rounds{0}, messages{0}, lefts{0};
   std::atomic<bool> ended{false};
 };
 
@@ -135,6 +136,17 @@ TEST_F(LiveServer, what_a_page_says_arrives) {
   for (int i = 0; i < 3; ++i) client.send(LiveClient::masked(2, bytes(8)));
   EXPECT_TRUE(comes_true([&] { return source_.messages == 3; }));
   EXPECT_TRUE(client.message());
+}
+
+TEST_F(LiveServer, page_that_had_spoken_and_is_gone_is_told_of_once) {
+  {
+    const LiveClient silent = page();
+    const LiveClient client = page();
+    client.send(LiveClient::masked(2, bytes(8)));
+    ASSERT_TRUE(comes_true([&] { return source_.messages == 1; }));
+  }
+  EXPECT_TRUE(comes_true([&] { return server_->pages() == 0; }));
+  EXPECT_EQ(source_.lefts, 1);
 }
 
 TEST_F(LiveServer, messages_that_are_not_understood_disconnect) {

@@ -18,7 +18,7 @@ float length(const std::array<T, 3>& v) {
 }  // namespace
 
 Feed::Feed(realtime::LiveTap& tap, double rate_Hz, const Pose& start,
-           std::function<void(const Pose&)> lead)
+           std::function<void(const hal::mock::Lead&)> lead)
     : tap_(tap),
       rate_Hz_(rate_Hz),
       origin_m_(start.position_m),
@@ -92,10 +92,15 @@ void Feed::frame(std::uint64_t& seen, std::vector<std::byte>& out) const {
 }
 
 bool Feed::message(std::span<const std::byte> bytes) {
-  const std::optional<Pose> wanted = parse_lead(bytes);
-  if (!wanted || !lead_) return false;
-  lead_({wanted->position_m + origin_m_, wanted->orientation});
+  std::optional<hal::mock::Lead> said = parse_lead(bytes);
+  if (!said || !lead_) return false;
+  said->to.position_m += origin_m_;
+  lead_(*said);
   return true;
+}
+
+void Feed::left() {
+  if (lead_) lead_({false, {}});
 }
 
 }  // namespace palpate::live

@@ -23,13 +23,15 @@ class Feed final : public Source {
  public:
   /// @param tap      outlives this; nobody else reads it
   /// @param start    where the tool is shown before the first tick
-  /// @param lead     told where a page wants the tool, in world axes; empty: no page leads
+  /// @param lead     told where a page wants the tool, in world axes; empty: no page leads. A page
+  ///                 that leaves lets go
   Feed(realtime::LiveTap& tap, double rate_Hz, const Pose& start,
-       std::function<void(const Pose&)> lead);
+       std::function<void(const hal::mock::Lead&)> lead);
 
   void update() override;
   void frame(std::uint64_t& seen, std::vector<std::byte>& out) const override;
   [[nodiscard]] bool message(std::span<const std::byte> bytes) override;
+  void left() override;
 
   /// The run is over; any thread.
   void end() noexcept { ended_ = true; }
@@ -41,7 +43,7 @@ class Feed final : public Source {
   realtime::LiveTap& tap_;
   double rate_Hz_;
   Vec3d origin_m_;
-  std::function<void(const Pose&)> lead_;
+  std::function<void(const hal::mock::Lead&)> lead_;
   std::atomic<bool> ended_{false};
   std::vector<realtime::TraceRecord> batch_;
   Status status_;

@@ -13,9 +13,9 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint32_t kLeadKind = 1;
-constexpr std::size_t kLeadHead = 8;
+constexpr std::uint32_t kLetGoKind = 2;
 constexpr double kUnitWithin = 1e-3;
-static_assert(kLeadBytes == kLeadHead + 7 * sizeof(double));
+static_assert(kLeadBytes == kLetGoBytes + 7 * sizeof(double));
 
 template <class T>
 void append(std::vector<std::byte>& out, T value) {
@@ -42,28 +42,32 @@ double bits_of(const Certificate& c) { return (c.truncated() ? 1 : 0) + (c.on_re
 
 }  // namespace
 
-std::optional<Pose> parse_lead(std::span<const std::byte> message) noexcept {
-  if (message.size() != kLeadBytes) return std::nullopt;
+std::optional<hal::mock::Lead> parse_lead(std::span<const std::byte> message) noexcept {
+  if (message.size() != kLeadBytes && message.size() != kLetGoBytes) return std::nullopt;
   std::array<std::uint32_t, 2> words{};
+  std::memcpy(words.data(), message.data(), kLetGoBytes);
+  const bool lets_go = message.size() == kLetGoBytes;
+  if (words[0] != (lets_go ? kLetGoKind : kLeadKind) || words[1] != 0) return std::nullopt;
+  if (lets_go) return hal::mock::Lead{false, {}};
+
   std::array<double, 7> v{};
-  std::memcpy(words.data(), message.data(), kLeadHead);
-  std::memcpy(v.data(), message.data() + kLeadHead, sizeof v);
-  if (words[0] != kLeadKind || words[1] != 0) return std::nullopt;
+  std::memcpy(v.data(), message.data() + kLetGoBytes, sizeof v);
   for (std::size_t i = 0; i < 3; ++i) {
     if (!(std::abs(v[i]) <= kFarthest_m)) return std::nullopt;
   }
   const double length = std::sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5] + v[6] * v[6]);
   if (!(std::abs(length - 1) <= kUnitWithin)) return std::nullopt;
-  return Pose{{v[0], v[1], v[2]}, {v[3] / length, v[4] / length, v[5] / length, v[6] / length}};
+  return hal::mock::Lead{
+      true, {{v[0], v[1], v[2]}, {v[3] / length, v[4] / length, v[5] / length, v[6] / length}}};
 }
 
-std::vector<std::byte> encode_lead(const Pose& wanted) {
+std::vector<std::byte> encode_lead(const hal::mock::Lead& lead) {
   std::vector<std::byte> out;
-  append(out, kLeadKind);
+  append(out, lead.held ? kLeadKind : kLetGoKind);
   append(out, std::uint32_t(0));
-  const Vec3d& p = wanted.position_m;
-  const Quat& q = wanted.orientation;
-  append_all(out, {p.x, p.y, p.z, q.w, q.x, q.y, q.z});
+  const Vec3d& p = lead.to.position_m;
+  const Quat& q = lead.to.orientation;
+  if (lead.held) append_all(out, {p.x, p.y, p.z, q.w, q.x, q.y, q.z});
   return out;
 }
 

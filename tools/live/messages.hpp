@@ -9,23 +9,26 @@
 #include <span>
 #include <vector>
 
-#include "rt_core/geometry/pose.hpp"
+#include "hal/mock/follower.hpp"
 #include "tools/realtime/live_tap.hpp"
 
 namespace palpate::live {
 
-/// Page to program: where the hand wants the tool. Nothing else is understood.
+/// Page to program: where the hand wants the tool, or that it lets go. Nothing else is understood.
 ///   u32 1 · u32 0 · f64 x, y, z (m) · f64 w, x, y, z of the quaternion
+///   u32 2 · u32 0
 inline constexpr std::size_t kLeadBytes = 64;
+inline constexpr std::size_t kLetGoBytes = 8;
 /// Farther off nothing is led.
 inline constexpr double kFarthest_m = 1e6;
 
 /// Absent for anything but a whole message with these two words, finite numbers, no coordinate
 /// beyond kFarthest_m and a quaternion within 1e-3 of unit length, which it is scaled to.
-[[nodiscard]] std::optional<Pose> parse_lead(std::span<const std::byte> message) noexcept;
+[[nodiscard]] std::optional<hal::mock::Lead> parse_lead(
+    std::span<const std::byte> message) noexcept;
 
 /// For tests: what parse_lead() reads.
-[[nodiscard]] std::vector<std::byte> encode_lead(const Pose& wanted);
+[[nodiscard]] std::vector<std::byte> encode_lead(const hal::mock::Lead& lead);
 
 /// Bits of Sample::marks.
 enum Mark : std::uint32_t { kMissed = 1, kFault = 2, kCutByBudget = 4 };

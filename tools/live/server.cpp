@@ -142,6 +142,7 @@ class Server::Core::Page : public std::enable_shared_from_this<Page> {
 
   void drop() {
     open_ = false;
+    if (std::exchange(has_spoken_, false)) core_.source_.left();
     beast::get_lowest_layer(ws_).close();
     auto& pages = core_.pages_;
     pages.erase(std::remove(pages.begin(), pages.end(), shared_from_this()), pages.end());
@@ -160,6 +161,7 @@ class Server::Core::Page : public std::enable_shared_from_this<Page> {
   void take_message() {
     const auto bytes = buffer_.data();
     const std::span message(static_cast<const std::byte*>(bytes.data()), bytes.size());
+    has_spoken_ = true;
     const bool understood = ws_.got_binary() && ++said_ <= core_.limits_.messages_a_frame &&
                             core_.source_.message(message);
     if (!understood) return close(websocket::close_code::policy_error);
@@ -180,6 +182,7 @@ class Server::Core::Page : public std::enable_shared_from_this<Page> {
   std::vector<std::byte> frame_;
   std::uint64_t seen_ = 0;
   std::size_t said_ = 0;  ///< messages since the last round
+  bool has_spoken_ = false;
   bool open_ = false, writing_ = false, closing_ = false, last_sent_ = false;
   Clock::time_point since_;  ///< it has been writing or closing
 };

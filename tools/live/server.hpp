@@ -36,6 +36,9 @@ class Source {
 
   /// What a page says. False: it is disconnected.
   [[nodiscard]] virtual bool message(std::span<const std::byte> bytes) = 0;
+
+  /// A page that had said something is gone.
+  virtual void left() = 0;
 };
 
 struct ServerLimits {

@@ -20,7 +20,8 @@ struct LiveViewOptions {
   bool browser = true;     ///< open it where there is a screen; else only say where it is
   std::string device;      ///< as the user named it
   double rate_Hz = 1000;
-  std::function<void(const Pose&)> lead;  ///< told where a page wants the tool; empty: none may
+  std::function<void(const hal::mock::Lead&)>
+      lead;  ///< told where a page wants the tool; empty: none may
 };
 
 class LiveView {

@@ -76,7 +76,7 @@ RunDevice make_run_device(const RunDeviceOptions& options, const config::Scene& 
     }
     led.led = mouse_limits(scene, radius_m);
     auto mock = make_mock(options, scene, led);
-    out.lead = [hand = mock.get()](const Pose& to) { hand->lead(to); };
+    out.lead = [hand = mock.get()](const hal::mock::Lead& lead) { hand->lead(lead); };
     out.device = std::move(mock);
   } else if (options.name == "mock") {
     out.device = make_mock(options, scene, {});

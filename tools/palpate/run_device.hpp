@@ -8,6 +8,7 @@
 #include <string>
 
 #include "hal/device.hpp"
+#include "hal/mock/follower.hpp"
 #include "tools/palpate/device_choice.hpp"
 #include "tools/palpate/scene_engine.hpp"
 
@@ -16,7 +17,7 @@ namespace palpate::cli {
 struct RunDevice {
   std::unique_ptr<hal::Device> device;
   /// Where the tool is led, from one other thread; empty: the device does not take that.
-  std::function<void(const Pose&)> lead;
+  std::function<void(const hal::mock::Lead&)> lead;
 };
 
 struct RunDeviceOptions {

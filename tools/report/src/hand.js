@@ -17,7 +17,7 @@ export class Hand {
   #pending = false;
   #line = new Line(new BufferGeometry(), new LineBasicMaterial({ depthTest: false }));
 
-  /// send({position, orientation}): called once a drawn frame at most.
+  /// send({position, orientation} | null): called once a drawn frame at most; null: it has let go.
   constructor(stage, tool, centre, send) {
     this.#stage = stage;
     this.#tool = tool;
@@ -126,7 +126,7 @@ export class Hand {
     event.preventDefault();
     const lines = event.deltaMode === 0 ? 1 : 16;
     const way = this.#forward().multiplyScalar(-kWheelOfSize * this.#stage.size * lines * event.deltaY);
-    if (!this.#held && performance.now() - this.#wheel_ms > kWheelLasts_ms) this.#begin();
+    if (!this.#wanted || (!this.#held && performance.now() - this.#wheel_ms > kWheelLasts_ms)) this.#begin();
     this.#wheel_ms = performance.now();
     this.#wanted.position.add(way);
     if (this.#held) {
@@ -142,7 +142,7 @@ export class Hand {
     event.stopPropagation();
     this.#held = null;
     this.#stage.host.style.cursor = '';
-    this.#begin();
+    this.#wanted = null;
     this.#say();
   }
 

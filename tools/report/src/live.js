@@ -4,7 +4,7 @@ import './style.css';
 import './live.css';
 import { readData } from './data.js';
 import { Hand } from './hand.js';
-import { leadMessage, readFrame } from './live_data.js';
+import { leadMessage, letGoMessage, readFrame } from './live_data.js';
 import { LiveStage } from './live_stage.js';
 import { certificateWords, contactWords, deadlineWords, forceWords, stateWords, tickWords } from './live_words.js';
 import { addBodyChoices } from './looks.js';
@@ -43,7 +43,7 @@ function link(state, text) {
 
 function send(wanted) {
   if (socket?.readyState !== WebSocket.OPEN) return;
-  socket.send(leadMessage(wanted.position.toArray(), wanted.orientation.toArray()));
+  socket.send(wanted ? leadMessage(wanted.position.toArray(), wanted.orientation.toArray()) : letGoMessage());
 }
 
 try {

@@ -49,6 +49,11 @@ export function readFrame(buffer, headNumbers) {
   };
 }
 
+/// The hand lets go.
+export function letGoMessage() {
+  return new Uint32Array([2, 0]).buffer;
+}
+
 /// Where the hand wants the tool: position [x, y, z], orientation [x, y, z, w].
 export function leadMessage(position, [x, y, z, w]) {
   const view = new DataView(new ArrayBuffer(64));
