@@ -155,10 +155,9 @@ TEST_F(LiveServer, messages_that_are_not_understood_disconnect) {
   unmasked[1] = 8;
   std::string endless = LiveClient::masked(2, bytes(8));
   endless[1] = char(0xff);  // a length of 64 bits follows
-  for (const std::string& said :
-       {LiveClient::masked(2, bytes(7)), LiveClient::masked(1, bytes(8)), too_long, unmasked,
-        endless + std::string(20, '\x7f'), std::string("\xff\xff\xff\xff\xff\xff\xff\xff"),
-        std::string("GET / HTTP/1.1\r\n\r\n")}) {
+  for (const std::string& said : {LiveClient::masked(2, bytes(7)), LiveClient::masked(1, bytes(8)),
+                                  too_long, unmasked, endless + std::string(20, '\x7f'),
+                                  std::string(20, '\xff'), std::string("GET / HTTP/1.1\r\n\r\n")}) {
     LiveClient client = page();
     client.send(said);
     EXPECT_TRUE(client.closes());
@@ -188,6 +187,13 @@ TEST_F(LiveServer, page_that_stops_reading_is_dropped_and_others_go_on) {
   EXPECT_EQ(server_->pages(), 1u);
   EXPECT_TRUE(reader.message());
   EXPECT_TRUE(stopped.closes());
+}
+
+TEST_F(LiveServer, page_that_does_not_answer_pings_is_dropped) {
+  limits_.silent = std::chrono::milliseconds(300);
+  restart();
+  LiveClient client = page();
+  EXPECT_TRUE(client.closes());
 }
 
 TEST_F(LiveServer, one_page_too_many_is_told_so) {

@@ -101,7 +101,7 @@ class Server::Core::Page : public std::enable_shared_from_this<Page> {
 
   void accept(const Request& request) {
     beast::get_lowest_layer(ws_).expires_never();  // the stream has times of its own
-    websocket::stream_base::timeout times{core_.limits_.request, std::chrono::seconds(20), true};
+    websocket::stream_base::timeout times{core_.limits_.request, core_.limits_.silent, true};
     ws_.set_option(times);
     ws_.read_message_max(core_.limits_.message_bytes);
     ws_.binary(true);

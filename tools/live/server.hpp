@@ -49,6 +49,7 @@ struct ServerLimits {
   std::size_t header_bytes = 8192;          ///< of a request
   std::chrono::milliseconds request{5000};  ///< for a whole request, and for an answer
   std::chrono::milliseconds stalled{2000};  ///< a page that takes no frame for so long is dropped
+  std::chrono::milliseconds silent{20000};  ///< nor even a pong to a ping: likewise
   std::chrono::milliseconds frame{16};      ///< a display's
   std::chrono::milliseconds farewell{300};  ///< for the last frame, at the end
   int send_buffer_bytes = 128 * 1024;       ///< what a page may lie behind, nearly
