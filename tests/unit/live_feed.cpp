@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
 
 #include "../support/virtual_loop.hpp"
 #include "tools/realtime/tapped_query.hpp"
@@ -27,7 +29,8 @@ Read next(const Feed& feed, std::uint64_t& seen) {
   out.head.resize(kHeadNumbers);
   std::memcpy(out.head.data(), bytes.data(), 8 * kHeadNumbers);
   out.rest.resize((bytes.size() - 8 * kHeadNumbers) / 4);
-  std::memcpy(out.rest.data(), bytes.data() + 8 * kHeadNumbers, 4 * out.rest.size());
+  std::copy_n(bytes.begin() + 8 * kHeadNumbers, 4 * out.rest.size(),
+              std::as_writable_bytes(std::span(out.rest)).begin());
   return out;
 }
 
