@@ -18,6 +18,7 @@
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <boost/beast/websocket/stream.hpp>
+#include <exception>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -77,6 +78,7 @@ class Server::Core {
   // Before the context, for what it holds to its end.
   std::size_t connections_ = 0;
   bool ending_ = false;
+  bool accepting_ = false;
   asio::io_context io_{1};
   tcp::acceptor acceptor_{io_};
   asio::steady_timer timer_{io_};
@@ -291,7 +293,13 @@ Server::Core::Core(std::string page, std::uint16_t port, Source& source, const S
 void Server::Core::start() {
   accept();
   next_round();
-  thread_ = std::thread([this] { io_.run(); });
+  thread_ = std::thread([this] {
+    try {
+      io_.run();
+    } catch (const std::exception&) {  // out of memory: the view ends, the run goes on
+      io_.stop();
+    }
+  });
 }
 
 void Server::Core::stop() {
@@ -304,9 +312,14 @@ void Server::Core::stop() {
 }
 
 void Server::Core::accept() {
+  accepting_ = true;
   acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
     if (!acceptor_.is_open()) return;
-    if (!error && connections_ < limits_.connections) {
+    if (error) {  // the process has no descriptors left, for instance
+      accepting_ = false;
+      return;
+    }
+    if (connections_ < limits_.connections) {
       ::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
       error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
@@ -322,6 +335,7 @@ void Server::Core::next_round() {
   timer_.expires_after(limits_.frame);
   timer_.async_wait([this](const error_code& error) {
     if (error || ending_) return;
+    if (!accepting_) accept();
     round();
     next_round();
   });
@@ -352,7 +366,12 @@ Server::Server(std::string page, std::uint16_t port, Source& source, const Serve
   core_->start();
 }
 
-Server::~Server() { core_->stop(); }
+Server::~Server() {
+  try {
+    core_->stop();
+  } catch (const std::exception&) {  // out of memory: nobody is left to be told
+  }
+}
 
 std::string Server::address() const {
   return "http://127.0.0.1:" + std::to_string(core_->port()) + "/" + core_->token() + "/";
