@@ -47,6 +47,7 @@ std::optional<DeviceProblem> MockDevice::open() {
   }
   period_ns_ = static_cast<std::uint64_t>(std::llround(1e9 * dt_s));
   hand_.emplace(parameters_, dt_s);
+  if (options_.led) follower_.emplace(*options_.led, hand_->pose());
   next_ns_ = 0;
   sequence_ = 0;
   command_ = {};
@@ -98,9 +99,16 @@ void MockDevice::begin_at(std::uint64_t time_ns) noexcept {
 }
 
 void MockDevice::period(std::uint64_t time_ns) noexcept {
-  hand_->advance(wrench_in_force(time_ns));
+  advance_hand(wrench_in_force(time_ns));
   next_ns_ += period_ns_;
   publish(time_ns);
+}
+
+void MockDevice::advance_hand(const Wrench& wrench) noexcept {
+  if (!follower_) return hand_->advance(wrench);
+  Lead lead;
+  if (leads_.read(lead)) follower_->lead(lead);
+  hand_->advance(wrench, follower_->advance(hand_->pose(), 1 / options_.rate_Hz));
 }
 
 void MockDevice::publish(std::uint64_t time_ns) noexcept {

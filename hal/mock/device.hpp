@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "hal/device.hpp"
 #include "hal/exchange.hpp"
 #include "hal/mock/faults.hpp"
+#include "hal/mock/follower.hpp"
 #include "hal/mock/hand.hpp"
 
 namespace palpate::hal::mock {
@@ -34,6 +36,8 @@ struct Options {
   /// or corrupted is one that a packet check has refused. While unplugged nothing is rendered.
   std::vector<FaultWindow> faults;
   std::uint64_t fault_seed = 1;
+  /// The hand goes where lead() says, in its script's stead.
+  std::optional<FollowLimits> led;
 };
 
 class MockDevice final : public Device {
@@ -51,6 +55,9 @@ class MockDevice final : public Device {
     return faults_.load(std::memory_order_relaxed);
   }
 
+  /// With Options::led. Wait-free, any one thread.
+  void lead(const Lead& lead) noexcept { leads_.write(lead); }
+
   /// Virtual time only: lives through every device period up to and including a time. The first
   /// call sets time zero of the hand and publishes the first reading.
   void advance_to(std::uint64_t time_ns) noexcept;
@@ -62,6 +69,7 @@ class MockDevice final : public Device {
   void run() noexcept;
   void begin_at(std::uint64_t time_ns) noexcept;
   void period(std::uint64_t time_ns) noexcept;
+  void advance_hand(const Wrench& wrench) noexcept;
   void publish(std::uint64_t time_ns) noexcept;
   void publish_faulty(DeviceState state) noexcept;
   [[nodiscard]] double seconds(std::uint64_t time_ns) const noexcept;
@@ -72,8 +80,9 @@ class MockDevice final : public Device {
   HandParameters parameters_;
   std::uint64_t period_ns_ = 0;
   std::optional<Hand> hand_;
-  std::uint64_t next_ns_ = 0;  ///< when the next period begins; 0 before the first
-  std::uint64_t zero_ns_ = 0;  ///< time zero of the hand
+  std::optional<Follower> follower_;  ///< where the hand is led
+  std::uint64_t next_ns_ = 0;         ///< when the next period begins; 0 before the first
+  std::uint64_t zero_ns_ = 0;         ///< time zero of the hand
   std::uint64_t sequence_ = 0;
   Faults script_;
   FaultyLine<DeviceState> line_;
@@ -82,6 +91,7 @@ class MockDevice final : public Device {
   DeviceCommand command_;  ///< the last one taken
   Mailbox<DeviceState> states_;
   Mailbox<DeviceCommand> commands_;
+  Mailbox<Lead> leads_;
   std::atomic<std::uint32_t> faults_{kNoDeviceFault};
   std::atomic<bool> stopping_{false};
   std::thread thread_;

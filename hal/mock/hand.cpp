@@ -65,6 +65,11 @@ void Hand::advance(const Wrench& wrench) noexcept {
   }
 }
 
+void Hand::advance(const Wrench& wrench, const Target& target) noexcept {
+  for (int i = 0; i < sub_steps_; ++i) sub_step(wrench, target);
+  steps_done_ += static_cast<std::uint64_t>(sub_steps_);
+}
+
 void Hand::sub_step(const Wrench& wrench, const Target& target) noexcept {
   const HandParameters& p = parameters_;
   const double h = step_s_;

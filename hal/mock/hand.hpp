@@ -51,6 +51,9 @@ class Hand {
   /// implicitly: stable for any damping.
   void advance(const Wrench& wrench) noexcept;
 
+  /// The same with a place where the tool is wanted, in the script's stead.
+  void advance(const Wrench& wrench, const Target& target) noexcept;
+
   [[nodiscard]] const Pose& pose() const noexcept { return pose_; }
   [[nodiscard]] const Twist& twist() const noexcept { return twist_; }
   [[nodiscard]] double time_s() const noexcept;

@@ -97,6 +97,13 @@ export class Chromium {
     await this.drawn();
   }
 
+  /// type: 'mousePressed', 'mouseMoved', 'mouseReleased' or 'mouseWheel'.
+  async mouse(type, x, y, { button = 'none', shift = false, deltaY } = {}) {
+    const buttons = { none: 0, left: 1, right: 2 }[type === 'mouseReleased' ? 'none' : button];
+    const wheel = deltaY === undefined ? {} : { deltaX: 0, deltaY };
+    await this.send('Input.dispatchMouseEvent', { type, x, y, button, buttons, modifiers: shift ? 8 : 0, clickCount: 1, ...wheel });
+  }
+
   async resize(width, height) {
     await this.send('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: width < 600 });
     await this.drawn();
@@ -120,6 +127,7 @@ export class Chromium {
   async close() {
     this.process.kill();
     await this.exited;
-    rmSync(this.profile, { recursive: true, force: true, maxRetries: 5 });
+    // Its children write for a moment longer.
+    rmSync(this.profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 200 });
   }
 }

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 if(TARGET report_bundle)
   add_test(NAME report_units COMMAND "${PALPATE_NODE}" "${PROJECT_SOURCE_DIR}/tests/browser/units.mjs")
-  set_tests_properties(report_units PROPERTIES LABELS unit)
+  add_test(NAME live_units COMMAND "${PALPATE_NODE}" "${PROJECT_SOURCE_DIR}/tests/browser/live_units.mjs")
+  set_tests_properties(report_units live_units PROPERTIES LABELS unit)
 endif()
 
 # Not in the regular suite: Chromium takes two minutes to install on a bare machine.
@@ -11,4 +12,10 @@ if(TARGET report_bundle AND PALPATE_CHROMIUM)
     COMMAND "${PALPATE_NODE}" "${PROJECT_SOURCE_DIR}/tests/browser/report.mjs" "${PALPATE_CHROMIUM}" "$<TARGET_FILE:palpate>"
       "${PROJECT_SOURCE_DIR}/tests/data/sweep.json")
   set_tests_properties(report_browser PROPERTIES LABELS "long;browser" TIMEOUT 600)
+endif()
+
+if(TARGET report_bundle AND PALPATE_CHROMIUM)
+  add_test(NAME live_browser
+    COMMAND "${PALPATE_NODE}" "${PROJECT_SOURCE_DIR}/tests/browser/live.mjs" "${PALPATE_CHROMIUM}" "$<TARGET_FILE:palpate>")
+  set_tests_properties(live_browser PROPERTIES LABELS "long;browser" TIMEOUT 600)
 endif()

@@ -185,6 +185,7 @@ TEST_F(NewScene, Try_leaves_a_folder_with_all_of_it) {
             std::string::npos)
       << outcome.out;
   if (outcome.err.find("no report") != std::string::npos) GTEST_SKIP() << "no page: no node";
+  EXPECT_NE(outcome.err.find("Live view: http://127.0.0.1:"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.out.find("\nReport: "), std::string::npos) << outcome.out;
   EXPECT_GT(fs::file_size(folder_.path() / "tried/report.html"), 10000u);
 }

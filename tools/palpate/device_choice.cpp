@@ -39,7 +39,8 @@ DeviceChoice parse_device(const std::string& text) {
 CLI::Validator is_device() {
   return {[](const std::string& text) -> std::string {
             const std::string kind = parse_device(text).kind;
-            const bool known = text == "mock" || kind == "usb" || kind == "falcon";
+            const bool known =
+                text == "mock" || text == "mouse" || kind == "usb" || kind == "falcon";
             return known ? "" : "unknown device '" + text + "'";
           },
           "DEVICE"};

@@ -17,13 +17,13 @@
 namespace palpate::cli {
 
 struct DeviceChoice {
-  std::string kind;    ///< "mock", "usb" or "falcon"
+  std::string kind;    ///< "mock", "mouse", "usb" or "falcon"
   std::string serial;  ///< empty: the only one there is
 };
 
 [[nodiscard]] DeviceChoice parse_device(const std::string& text);
 
-/// For options: mock, usb[:SERIAL] or falcon[:SERIAL].
+/// For options: mock, mouse, usb[:SERIAL] or falcon[:SERIAL].
 [[nodiscard]] CLI::Validator is_device();
 
 /// Throws Failure(kDevice) for what a device could not do. @param device  as the user named it

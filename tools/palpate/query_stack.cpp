@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/palpate/query_stack.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tools/palpate/scene_forces.hpp"
@@ -10,13 +11,20 @@ namespace {
 
 /// An answer serves for so many periods of the server; a host's stalls are shorter.
 constexpr double kMostServerPeriods = 50;
+/// More than a display draws.
+constexpr double kShownRate_Hz = 120;
 
 }  // namespace
 
 QueryStack::QueryStack(const config::Scene& scene, Engine& engine, std::span<const Pose> poses,
-                       double rate_Hz)
+                       double rate_Hz, const ContactTap& tap)
     : engine_(engine, poses, scene.tool) {
   const double period_s = 1 / rate_Hz;
+  if (tap.out != nullptr) {
+    const double asked_Hz = scene.contact_rate_Hz.value_or(rate_Hz);
+    const double every = std::max(1.0, std::round(asked_Hz / kShownRate_Hz));
+    top_ = &tapped_.emplace(*top_, *tap.out, static_cast<std::uint32_t>(every), tap.origin_m);
+  }
   if (has_friction(scene)) {
     top_ =
         &friction_.emplace(*top_, scene.pairs, scene.tool, scene.settings, poses, scene.friction);

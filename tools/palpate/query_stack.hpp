@@ -11,17 +11,24 @@
 #include "tools/realtime/engine_query.hpp"
 #include "tools/realtime/friction_query.hpp"
 #include "tools/realtime/steady_query.hpp"
+#include "tools/realtime/tapped_query.hpp"
 
 namespace palpate::cli {
 
-/// engine -> friction -> steadying -> (another thread) -> coupling or damping.
+/// What a live view is shown of the contacts.
+struct ContactTap {
+  hal::Mailbox<realtime::LiveTick>* out = nullptr;  ///< null: nothing
+  Vec3d origin_m{};                                 ///< of the view, in world axes
+};
+
+/// engine -> view -> friction -> steadying -> (another thread) -> coupling or damping.
 class QueryStack {
  public:
   /// @param engine   outlives this
   /// @param poses    [bodies]
   /// @param rate_Hz  of the loop that asks top()
   QueryStack(const config::Scene& scene, Engine& engine, std::span<const Pose> poses,
-             double rate_Hz);
+             double rate_Hz, const ContactTap& tap = {});
   QueryStack(const QueryStack&) = delete;
   QueryStack& operator=(const QueryStack&) = delete;
   QueryStack(QueryStack&&) = delete;
@@ -35,6 +42,7 @@ class QueryStack {
 
  private:
   realtime::EngineQuery engine_;
+  std::optional<realtime::TappedQuery> tapped_;
   std::optional<realtime::FrictionQuery> friction_;
   std::optional<realtime::SteadyQuery> steady_;
   std::optional<realtime::ContactServer> server_;

@@ -34,4 +34,8 @@ nlohmann::ordered_json report_json(const ReportInput& input, const Frames& frame
 nlohmann::ordered_json view_json(const ReportScene& view, const ShownContacts& contacts,
                                  const Frames& frames);
 
+/// The bodies of a scene where it puts them: what view_json() begins with, for a live view. Throws
+/// likewise.
+nlohmann::ordered_json scene_json(const config::Scene& scene);
+
 }  // namespace palpate::cli

@@ -32,27 +32,29 @@ std::string for_html(const nlohmann::ordered_json& data) {
   return out;
 }
 
-}  // namespace
-
-fs::path report_page() {
+fs::path page_file(const char* name) {
   std::error_code error;
   const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (const fs::path& page : {folder / "report.html", folder / "../share/palpate/report.html"}) {
+  for (const fs::path& page : {folder / name, folder / "../share/palpate" / name}) {
     if (fs::exists(page, error)) return page;
   }
-  throw Failure(kOther, "this build has no page for reports", (folder / "report.html").string(),
-                kMendPage);
+  throw Failure(kOther, "this build has no page to show", (folder / name).string(), kMendPage);
 }
+
+}  // namespace
+
+fs::path report_page() { return page_file("report.html"); }
+fs::path live_page() { return page_file("live.html"); }
 
 std::string fill_page(const fs::path& page, const nlohmann::ordered_json& data) {
   std::string text;
   if (const std::error_code error = config::read_text(page, text)) {
-    throw Failure(kOther, "cannot read the page for reports (" + error.message() + ")",
-                  page.string(), kMendPage);
+    throw Failure(kOther, "cannot read the page (" + error.message() + ")", page.string(),
+                  kMendPage);
   }
   const std::size_t place = text.find(kPlace);
   if (place == std::string::npos || text.find(kPlace, place + 1) != std::string::npos) {
-    throw Failure(kOther, "not a page for reports", page.string(), kMendPage);
+    throw Failure(kOther, "not a page of palpate", page.string(), kMendPage);
   }
   return text.replace(place, kPlace.size(), for_html(data));
 }

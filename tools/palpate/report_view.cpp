@@ -110,6 +110,9 @@ std::vector<std::string> packed_tracks(const ReportScene& view, const Frames& fr
   return out;
 }
 
+/// Of what is drawn, in world axes.
+Vec3d origin_of(const config::Scene& scene) { return scene.bodies[scene.tool].pose.position_m; }
+
 const char* role_name(config::Role role) {
   return role == config::Role::tool ? "tool" : role == config::Role::moved ? "moved" : "fixed";
 }
@@ -149,21 +152,20 @@ Json contacts_json(const config::Scene& scene, const Images& images,
           {"sides", packed(sides)}};
 }
 
-}  // namespace
-
-nlohmann::ordered_json view_json(const ReportScene& view, const ShownContacts& contacts,
-                                 const Frames& frames) {
-  const config::Scene& scene = view.scene;
-  const Images images = open_images(scene);
-  const std::vector<Wanted> wanted = wanted_pieces(scene, images, contacts.contacts);
-  const Vec3d origin_m = scene.bodies[scene.tool].pose.position_m;
-  std::vector<PieceShapes> pieces;
-  Json image_list = Json::array();
+/// What images are drawn as, `pieces` with them.
+Json images_json(const Images& images, const std::vector<Wanted>& wanted,
+                 std::vector<PieceShapes>& out_pieces) {
+  Json list = Json::array();
   for (std::size_t i = 0; i < images.files.size(); ++i) {
-    pieces.push_back(piece_shapes(images.files[i].view(), wanted[i]));
-    image_list.push_back(image_json(images.files[i], pieces.back()));
+    out_pieces.push_back(piece_shapes(images.files[i].view(), wanted[i]));
+    list.push_back(image_json(images.files[i], out_pieces.back()));
   }
-  const std::vector<std::string> tracks = packed_tracks(view, frames, origin_m);
+  return list;
+}
+
+Json bodies_json(const ReportScene& view, const Frames& frames, const Images& images) {
+  const config::Scene& scene = view.scene;
+  const std::vector<std::string> tracks = packed_tracks(view, frames, origin_of(scene));
   Json bodies = Json::array();
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     bodies.push_back({{"name", scene.bodies[i].name},
@@ -171,13 +173,38 @@ nlohmann::ordered_json view_json(const ReportScene& view, const ShownContacts& c
                       {"image", images.of_body[i]},
                       {"track", tracks[i]}});
   }
+  return bodies;
+}
+
+}  // namespace
+
+nlohmann::ordered_json view_json(const ReportScene& view, const ShownContacts& contacts,
+                                 const Frames& frames) {
+  const config::Scene& scene = view.scene;
+  const Images images = open_images(scene);
+  std::vector<PieceShapes> pieces;
+  const Json image_list =
+      images_json(images, wanted_pieces(scene, images, contacts.contacts), pieces);
   return {{"origin", contacts.origin},
           {"delta_m", scene.settings.delta_m},
           {"tool", scene.tool},
           {"images", image_list},
-          {"bodies", bodies},
+          {"bodies", bodies_json(view, frames, images)},
           {"force_N", packed(to_floats(contacts.force_N))},
-          {"contacts", contacts_json(scene, images, pieces, contacts, origin_m)}};
+          {"contacts", contacts_json(scene, images, pieces, contacts, origin_of(scene))}};
+}
+
+nlohmann::ordered_json scene_json(const config::Scene& scene) {
+  const Images images = open_images(scene);
+  std::vector<PieceShapes> no_pieces;
+  const Json image_list = images_json(images, std::vector<Wanted>(images.files.size()), no_pieces);
+  ReportScene still;
+  still.scene = scene;
+  still.track.ticks.emplace_back();
+  return {{"delta_m", scene.settings.delta_m},
+          {"tool", scene.tool},
+          {"images", image_list},
+          {"bodies", bodies_json(still, frames_of(1), images)}};
 }
 
 }  // namespace palpate::cli

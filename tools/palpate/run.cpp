@@ -14,12 +14,13 @@
 #include <thread>
 #include <vector>
 
-#include "hal/mock/device.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/device_choice.hpp"
 #include "tools/palpate/error_line.hpp"
 #include "tools/palpate/fault_words.hpp"
+#include "tools/palpate/live_view.hpp"
 #include "tools/palpate/query_stack.hpp"
+#include "tools/palpate/run_device.hpp"
 #include "tools/palpate/run_summary.hpp"
 #include "tools/palpate/scene_engine.hpp"
 #include "tools/palpate/stable_scene.hpp"
@@ -27,7 +28,6 @@
 #include "tools/realtime/device_axes.hpp"
 #include "tools/realtime/loop.hpp"
 #include "tools/realtime/realtime_thread.hpp"
-#include "tools/realtime/scene_hand.hpp"
 #include "tools/realtime/trace_writer.hpp"
 
 namespace palpate::cli {
@@ -35,9 +35,6 @@ namespace {
 
 /// Ticks that the disk may stand still for: 8 s at 1 kHz.
 constexpr std::size_t kTelemetryRecords = 8192;
-/// Readings of the mock device for each tick, so that what a tick uses is at most half a period
-/// old.
-constexpr double kMockReadingsPerTick = 2.0;
 constexpr std::chrono::milliseconds kWatchEvery(50);
 
 struct RunOptions {
@@ -48,6 +45,9 @@ struct RunOptions {
   std::filesystem::path firmware;
   std::filesystem::path poses;  ///< empty: the scene's [[mock.path]]
   std::string trace;
+  bool view = false;            ///< a live page
+  std::uint16_t view_port = 0;  ///< 0: any
+  bool no_browser = false;
   realtime::RealtimeOptions realtime;
   bool json = false;
   bool quiet = false;
@@ -80,22 +80,6 @@ class StopOnSignal {
   struct sigaction old_terminate_ {};
 };
 
-std::unique_ptr<hal::Device> make_device(const RunOptions& options, const config::Scene& scene,
-                                         const std::vector<hal::protocol::ImageHash>& images,
-                                         double rate_Hz, hal::Clock& clock) {
-  const int priority = options.realtime.fifo_priority;
-  if (options.device != "mock") {
-    // Below the loop, which does not wait for it; above everything else.
-    return make_usb_device(options.device, options.firmware, images, clock,
-                           std::max(priority - 1, 0));
-  }
-  hal::mock::Options mock;
-  mock.rate_Hz = kMockReadingsPerTick * rate_Hz;
-  // It stands in for hardware, which the loop does not keep waiting either.
-  mock.fifo_priority = priority == 0 ? 0 : std::min(priority + 1, realtime::kMaxFifoPriority);
-  return std::make_unique<hal::mock::MockDevice>(realtime::hand_of(scene), mock);
-}
-
 realtime::LoopSettings loop_settings(const RunOptions& options, const config::Scene& scene,
                                      double rate_Hz, const hal::Capabilities& device) {
   realtime::LoopSettings settings;
@@ -121,7 +105,7 @@ realtime::LoopSettings loop_settings(const RunOptions& options, const config::Sc
 
 /// Of the device and the hand on it, where it is known.
 std::optional<double> damping(const RunOptions& options, const config::Scene& scene) {
-  if (scene.device_damping_N_s_per_m || options.device != "mock") {
+  if (scene.device_damping_N_s_per_m || !is_mock_hand(options.device)) {
     return scene.device_damping_N_s_per_m;
   }
   return scene.hand.damping_N_s_per_m;
@@ -231,7 +215,16 @@ void tell_of_start(const RunOptions& options, const config::Scene& scene, SceneE
   if (!overlap.empty()) std::cerr << "Note: " << overlap << ".\n";
 }
 
+/// The mouse is a page's.
+void check_mouse(const RunOptions& options) {
+  if (options.device == "mouse" && !options.view) {
+    throw Failure(kUsage, "the mouse leads the hand in the live view", "--device mouse",
+                  "add --view");
+  }
+}
+
 void run(RunOptions options) {
+  check_mouse(options);
   config::Scene scene = config::load_scene(options.scene);
   take_poses(options, scene);
   const double rate_Hz = options.rate_Hz.value_or(scene.rate_Hz);
@@ -240,8 +233,18 @@ void run(RunOptions options) {
   if (!stable.note.empty() && !options.quiet) std::cerr << stable.note << "\n";
   SceneEngine engine(stable.scene);
   tell_of_start(options, scene, engine);
-  const auto device = make_device(options, scene, engine.image_hashes(), rate_Hz, clock);
-  QueryStack queries(stable.scene, engine.engine(), engine.start_poses(), rate_Hz);
+  const RunDevice made =
+      make_run_device({options.device, options.firmware, options.realtime.fifo_priority, rate_Hz},
+                      stable.scene, engine, clock);
+  hal::Device* const device = made.device.get();
+  std::unique_ptr<LiveView> view;
+  if (options.view) {
+    view = std::make_unique<LiveView>(
+        stable.scene, LiveViewOptions{options.view_port, !options.no_browser, options.device,
+                                      rate_Hz, made.lead});
+  }
+  QueryStack queries(stable.scene, engine.engine(), engine.start_poses(), rate_Hz,
+                     view ? view->contacts() : ContactTap{});
   if (const auto problem = device->open()) fail(options.device, *problem);
 
   const auto settings = loop_settings(options, scene, rate_Hz, device->capabilities());
@@ -253,15 +256,18 @@ void run(RunOptions options) {
     });
   }
   const auto loop = std::make_unique<realtime::Loop>(settings, *device, queries.top(), clock,
-                                                     trace ? &ring : nullptr);
+                                                     trace ? &ring : nullptr,
+                                                     view ? &view->tap().records : nullptr);
   if (parse_device(options.device).kind == "falcon" && !options.quiet) {
     std::cerr << "Pull the grip all the way out, then push it all the way in.\n";
   }
+  if (view) view->announce();
   if (const auto problem = device->start()) fail(options.device, *problem);
 
   RunOutcome outcome;
   const ServerThread server(options, stable.scene, queries.server(), clock);
   outcome.grant = drive(options, settings, *loop, *device);
+  if (view) view->end();
   outcome.scene = scene.file;
   outcome.device = options.device;
   outcome.rate_Hz = rate_Hz;
@@ -282,7 +288,9 @@ void add_run(CLI::App& app) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Run the real-time loop against a device");
   command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
-  command->add_option("--device", options->device, "mock, usb[:SERIAL] or falcon[:SERIAL]")
+  command
+      ->add_option("--device", options->device,
+                   "mock, mouse (with --view), usb[:SERIAL] or falcon[:SERIAL]")
       ->check(is_device())
       ->capture_default_str();
   command->add_option("--firmware", options->firmware,
@@ -294,6 +302,11 @@ void add_run(CLI::App& app) {
   command->add_option("--poses", options->poses,
                       "motion of the mock hand (POSES.csv), in place of the scene's [[mock.path]]; "
                       "it starts over where --seconds is longer");
+  CLI::Option* const view = command->add_flag(
+      "--view{0}", options->view_port,
+      "show the run in a page of this machine while it goes on; --view=PORT: at this port");
+  view->check(CLI::Range(0, 65535));
+  command->add_flag("--no-browser", options->no_browser, "with --view: only say the address");
   command->add_option("-o,--output", options->trace, "write a record of each tick to this file");
   command
       ->add_option("--priority", options->realtime.fifo_priority,
@@ -304,7 +317,10 @@ void add_run(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", options->json, "print the summary as JSON");
   command->add_flag("--quiet", options->quiet, "no progress");
-  command->callback([options] { run(*options); });
+  command->callback([options, view] {
+    options->view = view->count() > 0;
+    run(*options);
+  });
 }
 
 }  // namespace palpate::cli

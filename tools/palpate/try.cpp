@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // palpate try: two meshes, a motion that touches, a run and its report, in one command.
-#include <spawn.h>
-
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -11,12 +8,11 @@
 #include <vector>
 
 #include "config/scene.hpp"
+#include "tools/palpate/browser.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/new_scene.hpp"
 #include "tools/palpate/report_page.hpp"
 #include "tools/palpate/touch_motion.hpp"
-
-extern char** environ;
 
 namespace palpate::cli {
 namespace {
@@ -67,29 +63,16 @@ void make_scene_and_motion(const TryOptions& options) {
   std::cout << options.file("motion.csv").string() << ": down, touch, slide, up\n";
 }
 
-/// A build without a page has everything else.
-bool write_report(const TryOptions& options) {
+/// A build without pages has everything else.
+bool has_pages() {
   try {
     static_cast<void>(report_page());
+    static_cast<void>(live_page());
+    return true;
   } catch (const Failure& e) {
-    std::cerr << "palpate: no report: " << e.what() << "\n";
+    std::cerr << "palpate: no live view and no report: " << e.what() << "\n";
     return false;
   }
-  run_command(
-      options, add_report,
-      {"report", options.file("run.trace").string(), "-o", options.file("report.html").string()});
-  return true;
-}
-
-/// Whoever sits at a screen sees it at once.
-void open_page(const fs::path& page) {
-  const bool screen =
-      std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
-  if (!screen) return;
-  std::string opener = "xdg-open", file = page.string();
-  char* const arguments[] = {opener.data(), file.data(), nullptr};
-  pid_t process = 0;
-  ::posix_spawnp(&process, opener.c_str(), nullptr, nullptr, arguments, environ);
 }
 
 void try_meshes(TryOptions options) {
@@ -100,14 +83,23 @@ void try_meshes(TryOptions options) {
   make_try_folder(options.folder);
   options.scene.scene = options.file("scene.toml");
   make_scene_and_motion(options);
+  const bool pages = has_pages();
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%g", options.seconds);
-  run_command(options, add_run,
-              {"run", options.scene.scene.string(), "--poses", options.file("motion.csv").string(),
-               "--seconds", seconds, "-o", options.file("run.trace").string()});
-  if (!write_report(options)) return;
-  std::cout << "\nReport: " << fs::absolute(options.file("report.html")).string() << "\n";
-  if (!options.no_browser) open_page(options.file("report.html"));
+  std::vector<std::string> run = {"run",       options.scene.scene.string(),
+                                  "--poses",   options.file("motion.csv").string(),
+                                  "--seconds", seconds,
+                                  "-o",        options.file("run.trace").string()};
+  if (pages) run.emplace_back("--view");
+  if (pages && options.no_browser) run.emplace_back("--no-browser");
+  run_command(options, add_run, run);
+  if (!pages) return;
+  const std::string report = options.file("report.html").string();
+  run_command(options, add_report, {"report", options.file("run.trace").string(), "-o", report});
+  std::cout << "\nReport: " << fs::absolute(report).string() << "\n";
+  std::cout << "Next: palpate run " << options.scene.scene.string()
+            << " --device mouse --view, and pull the tool yourself\n";
+  if (!options.no_browser) open_on_screen(report);
 }
 
 }  // namespace
@@ -115,7 +107,8 @@ void try_meshes(TryOptions options) {
 void add_try(CLI::App& app) {
   const auto options = std::make_shared<TryOptions>();
   CLI::App* command = app.add_subcommand(
-      "try", "Two meshes of yours, felt by the mock device: scene, motion, run and report");
+      "try",
+      "Two meshes of yours, felt by the mock device: scene, motion, run with a live view, report");
   command->add_option("TOOL", options->scene.tool, "Mesh that the hand holds (OBJ, PLY, STL, OFF)")
       ->required();
   command->add_option("OTHER", options->scene.other, "Mesh that it touches")->required();
@@ -129,7 +122,8 @@ void add_try(CLI::App& app) {
   command->add_option("--threads", options->scene.threads, "Threads to bake with, 0: all cores")
       ->check(CLI::Range(0u, kMaxThreads))
       ->capture_default_str();
-  command->add_flag("--no-browser", options->no_browser, "Do not open the report");
+  command->add_flag("--no-browser", options->no_browser,
+                    "Do not open the live view and the report");
   command->add_flag("--quiet", options->quiet, "Print the summary of the run and the report alone");
   command->callback([options] { try_meshes(*options); });
 }

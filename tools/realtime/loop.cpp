@@ -53,12 +53,13 @@ struct Loop::Tick {
 };
 
 Loop::Loop(const LoopSettings& settings, hal::Device& device, ContactQuery& query,
-           hal::Clock& clock, hal::Ring<TraceRecord>* telemetry)
+           hal::Clock& clock, hal::Ring<TraceRecord>* telemetry, hal::Ring<TraceRecord>* live)
     : settings_(settings),
       device_(device),
       query_(query),
       clock_(clock),
       telemetry_(telemetry),
+      live_(live),
       safety_(settings.safety, 1.0 / settings.rate_Hz),
       passivity_(settings.passivity_limits),
       period_ns_(nanoseconds(1.0 / settings.rate_Hz)) {}
@@ -101,7 +102,7 @@ std::uint64_t Loop::run_tick(std::uint64_t due_ns) noexcept {
   safety_.tick_ended(late);
   note_faults();
   account(tick);
-  if (telemetry_ != nullptr) record(tick);
+  if (telemetry_ != nullptr || live_ != nullptr) record(tick);
   ++report_.ticks;
   return late;
 }
@@ -198,7 +199,8 @@ void Loop::record(const Tick& tick) noexcept {
   out.state = static_cast<std::uint8_t>(safety_.state());
   out.truncated = truncation_bits(result.certificate);
   out.faults = safety_.faults().bits;
-  telemetry_->push(out);
+  if (telemetry_ != nullptr) telemetry_->push(out);
+  if (live_ != nullptr) live_->push(out);
 }
 
 }  // namespace palpate::realtime

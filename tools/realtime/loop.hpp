@@ -81,9 +81,10 @@ struct LoopReport {
 
 class Loop {
  public:
-  /// Everything given must outlive the loop. @param telemetry  null: no records
+  /// Everything given must outlive the loop. @param telemetry, live  each gets every tick's record;
+  /// null: none
   Loop(const LoopSettings& settings, hal::Device& device, ContactQuery& query, hal::Clock& clock,
-       hal::Ring<TraceRecord>* telemetry);
+       hal::Ring<TraceRecord>* telemetry, hal::Ring<TraceRecord>* live = nullptr);
 
   /// Runs until the periods are over or `stop` becomes true, then sends a last command of zero.
   /// Once. Periods in which the device is homing come on top of those asked for.
@@ -117,6 +118,7 @@ class Loop {
   ContactQuery& query_;
   hal::Clock& clock_;
   hal::Ring<TraceRecord>* telemetry_;
+  hal::Ring<TraceRecord>* live_;
   SafetyStage safety_;
   PassivityController passivity_;
   std::uint64_t period_ns_;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Makes PAGE with NODE from SOURCE, with the packages of package-lock.json in PACKAGES. Where the packages cannot be had it
-# warns, leaves no page, and does not fail: a build without a network is a build all the same. The next one tries again.
+# Makes PAGE and LIVE with NODE from SOURCE, with the packages of package-lock.json in PACKAGES. Where the packages cannot be had it
+# warns, leaves none, and does not fail: a build without a network is a build all the same. The next one tries again.
 
 # Debian's npm brings 386 packages and takes minutes to install; npm's own is one archive. This one runs on node 18.17 or later.
 set(npm_version 10.9.4)
@@ -43,7 +43,7 @@ function(run_npm out_failed)
   endif()
 endfunction()
 
-file(REMOVE "${PAGE}")
+file(REMOVE "${PAGE}" "${LIVE}")
 file(MAKE_DIRECTORY "${PACKAGES}")
 set(failed "")
 file(SHA256 "${SOURCE}/package-lock.json" wanted)
@@ -60,8 +60,8 @@ if(NOT have STREQUAL wanted)
 endif()
 
 if(failed)
-  message(WARNING "No page for 'palpate report': ${failed}\n"
+  message(WARNING "No pages for 'palpate report' and 'palpate run --view': ${failed}\n"
     "All else is built. With a network, build the target report_bundle again.")
 else()
-  execute_process(COMMAND "${NODE}" "${SOURCE}/build.mjs" "${PACKAGES}" "${PAGE}" COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND "${NODE}" "${SOURCE}/build.mjs" "${PACKAGES}" "${PAGE}" "${LIVE}" COMMAND_ERROR_IS_FATAL ANY)
 endif()

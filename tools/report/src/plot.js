@@ -4,6 +4,7 @@ import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import { number } from './units.js';
 
+const kMarkOfHeight = 0.16;
 const rebuilds = [];
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const colourOf = (index) => style(`--series-${index % 8}`);
@@ -74,17 +75,56 @@ function joined(series, logX, logY) {
   );
 }
 
+function drawLines(u, lines) {
+  const { ctx, bbox } = u;
+  ctx.save();
+  ctx.strokeStyle = ctx.fillStyle = style('--quiet');
+  ctx.lineWidth = devicePixelRatio;
+  ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
+  ctx.textAlign = 'left';
+  ctx.textBaseline = 'alphabetic';
+  ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+  for (const { y, name } of lines) {
+    const at = u.valToPos(y, 'y', true);
+    ctx.beginPath();
+    ctx.moveTo(bbox.left, at);
+    ctx.lineTo(bbox.left + bbox.width, at);
+    ctx.stroke();
+    ctx.fillText(name, bbox.left + 4 * devicePixelRatio, at - 3 * devicePixelRatio);
+  }
+  ctx.restore();
+}
+
+/// In the upper margin of what they concern, and not across it.
+function drawMarks(u, marks) {
+  const { ctx, bbox } = u;
+  ctx.save();
+  ctx.lineWidth = 1.5 * devicePixelRatio;
+  for (const { x, colour } of marks) {
+    const at = u.valToPos(x, 'x', true);
+    if (at < bbox.left || at > bbox.left + bbox.width) continue;
+    ctx.strokeStyle = style(colour);
+    ctx.beginPath();
+    ctx.moveTo(at, bbox.top);
+    ctx.lineTo(at, bbox.top + kMarkOfHeight * bbox.height);
+    ctx.stroke();
+  }
+  ctx.restore();
+}
+
 /// Adds a plot to `host`.
 /// series: [{name, values, x?, kind: 'line' | 'joined' | 'points' | 'steps', colour?, hollow?, size?, dash?, width?}]; with `x` of
 /// their own, or all over the common x.
-/// Returns {show(x)}: moves the line that marks the page's frame.
-export function addPlot(host, { title, x, series, xLabel, yLabel, logX, logY, height = 240, onClick, onPoint }) {
+/// lines: [{y, name}], across the plot and always in sight; marks: () => [{x, colour}], at the upper edge.
+/// compact: no names of axes or values. span: () => [from, to] of x; absent: all of it.
+/// Returns {show(x)}: moves the line that marks the page's frame; {setTable([x, ...values])}: other data of the same series.
+export function addPlot(host, { title, x, series, xLabel, yLabel, logX, logY, height = 240, onClick, onPoint, lines = [], marks, compact, span }) {
   const heading = document.createElement('h3');
   heading.textContent = title;
   const place = document.createElement('div');
   host.append(heading, place);
   host.dataset.points = 0;
-  const table = x ? [values(x, logX), ...series.map((s) => values(s.values, logY))] : joined(series, logX, logY);
+  let table = x ? [values(x, logX), ...series.map((s) => values(s.values, logY))] : joined(series, logX, logY);
   const filled = table.slice(1).flat().filter((v) => v !== null && v !== undefined).length;
   host.dataset.points = filled;
   const mark = document.createElement('div');
@@ -98,19 +138,30 @@ export function addPlot(host, { title, x, series, xLabel, yLabel, logX, logY, he
     if (shown !== null) mark.style.left = `${plot.valToPos(shown, 'x')}px`;
   };
   const scale = (log) => (log ? { distr: 3 } : {});
+  const yRange = (_, low, high) => {
+    const most = Math.max(high ?? 0, ...lines.map((line) => line.y));
+    const least = Math.min(low ?? 0, 0);
+    return most > least ? [least, most + 0.2 * (most - least)] : [0, 1];
+  };
+  const yScale = () => (lines.length > 0 || compact ? { range: yRange } : scale(logY));
+  const xScale = () => (span ? { range: () => span() } : {});
   const build = () => {
     plot?.destroy();
     plot = new uPlot(
       {
         width: Math.max(260, place.clientWidth),
         height,
-        scales: { x: { time: false, ...scale(logX) }, y: scale(logY) },
-        axes: [axis(xLabel, logX, 34), axis(yLabel, logY, 66)],
+        scales: { x: { time: false, ...scale(logX), ...xScale() }, y: yScale() },
+        axes: compact
+          ? [{ ...axis(xLabel, logX, 24), label: undefined }, { ...axis(yLabel, logY, 52), label: undefined }]
+          : [axis(xLabel, logX, 34), axis(yLabel, logY, 66)],
+        legend: { show: !compact },
         series: [{ label: xLabel, value: (_, v) => number(v, 5) }, ...series.map(seriesOptions)],
-        cursor: { drag: { x: true, y: false }, points: { size: 7 } },
+        cursor: compact ? { show: false } : { drag: { x: true, y: false }, points: { size: 7 } },
         hooks: {
           setScale: [() => plot && moveMark()],
           setCursor: [(u) => onPoint?.(u)],
+          draw: [(u) => drawLines(u, lines), (u) => drawMarks(u, marks?.() ?? [])],
         },
       },
       table,
@@ -134,6 +185,11 @@ export function addPlot(host, { title, x, series, xLabel, yLabel, logX, logY, he
     show(value) {
       shown = value;
       moveMark();
+    },
+    setTable(values) {
+      table = values;
+      plot.setData(table);
+      host.dataset.points = table[0].length * (table.length - 1);
     },
   };
 }

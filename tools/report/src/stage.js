@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stands in the 3D view: bodies, the pieces that are in contact, contacts, and the force.
+// What stands in a 3D view: bodies, the pieces that are in contact, contacts, and the force.
 // Lengths are metres from the tool's first position. Drawn when something changes, not all the time.
 import {
-  AmbientLight, ArrowHelper, Box3, BufferAttribute, BufferGeometry, Color, DirectionalLight, Group, Mesh,
-  MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, Points, PointsMaterial, Scene, Vector3, WebGLRenderer,
+  AmbientLight, ArrowHelper, Box3, BufferAttribute, BufferGeometry, Color, DirectionalLight, Group, LineBasicMaterial,
+  LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, Points, PointsMaterial, Scene, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { counts, floats } from './data.js';
@@ -16,6 +16,18 @@ function shapeOf(image) {
   geometry.setIndex(new BufferAttribute(counts(image.faces), 1));
   geometry.computeVertexNormals();
   return geometry;
+}
+
+/// Triples into an attribute, in the memory that it has where they fit.
+function refill(geometry, name, values) {
+  const attribute = geometry.getAttribute(name);
+  if (attribute && attribute.array.length >= values.length) {
+    attribute.array.set(values);
+    attribute.needsUpdate = true;
+  } else {
+    geometry.setAttribute(name, new BufferAttribute(values, 3));
+  }
+  geometry.setDrawRange(0, values.length / 3);
 }
 
 /// The triangles of some pieces of one image, with the colour of each one's level.
@@ -53,18 +65,16 @@ export class Stage {
   #camera = new PerspectiveCamera(40, 1, 0.01, 100);
   #bodies = [];
   #contactPoints = new Points(new BufferGeometry(), new PointsMaterial({ size: 7, sizeAttenuation: false, vertexColors: true, depthTest: false }));
+  #normals = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ depthTest: false }));
   #arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 1, 0x888888);
   #pending = false;
   #contacts = [];
-  #frame = 0;
+  #patched = false;
 
   /// Throws where the browser has no WebGL.
-  constructor(host, view, times) {
+  constructor(host, view) {
     this.host = host;
     this.view = view;
-    this.times = times;
-    this.forces = floats(view.force_N);
-    this.tracks = view.bodies.map((body) => floats(body.track));
     this.size = Math.max(...view.bodies.map((body) => view.images[body.image].radius_m));
     this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
     host.append(this.renderer.domElement);
@@ -72,9 +82,11 @@ export class Stage {
     this.renderer.domElement.setAttribute('role', 'img');
     this.#addLights();
     this.#addBodies();
-    this.#contactPoints.renderOrder = 3;
-    this.#contactPoints.frustumCulled = false;
-    this.#scene.add(this.#contactPoints, this.#arrow);
+    for (const part of [this.#contactPoints, this.#normals]) {
+      part.renderOrder = 3;
+      part.frustumCulled = false;
+    }
+    this.#scene.add(this.#contactPoints, this.#normals, this.#arrow);
     for (const part of [this.#arrow.line, this.#arrow.cone]) {
       part.material.depthTest = false;
       part.renderOrder = 4;
@@ -94,36 +106,70 @@ export class Stage {
     return `#${new Color().setHSL(0.11 + 0.66 * share, 0.8, 0.56 - 0.1 * share).getHexString()}`;
   }
 
-  /// The frame in which the tool feels most.
-  strongestFrame() {
-    let best = 0;
-    for (let frame = 1; 3 * frame < this.forces.length; ++frame) {
-      if (Math.hypot(...this.forceAt(frame)) > Math.hypot(...this.forceAt(best))) best = frame;
-    }
-    return best;
+  /// pose: [x, y, z, qx, qy, qz, qw], from `at` on.
+  place(index, pose, at = 0) {
+    const { group } = this.#bodies[index];
+    group.position.fromArray(pose, at);
+    group.quaternion.fromArray(pose, at + 3);
   }
 
-  forceAt(frame) {
-    return this.forces.subarray(3 * frame, 3 * frame + 3);
-  }
-
-  positionOf(body, frame) {
-    return this.tracks[body].subarray(7 * frame, 7 * frame + 3);
-  }
-
-  show(frame, contacts) {
-    this.#frame = frame;
+  /// contacts: [{point, distance, normal?, a?, b?}]; a and b say on which pieces they lie.
+  showContacts(contacts) {
     this.#contacts = contacts;
-    this.#bodies.forEach((body, index) => {
-      const track = this.tracks[index].subarray(7 * frame, 7 * frame + 7);
-      body.group.position.fromArray(track, 0);
-      body.group.quaternion.fromArray(track, 3);
-      const sides = contacts.flatMap((c) => [c.a, c.b]).filter((side) => side.body === index);
-      body.pieces.fill(body.patch.geometry, sides);
-    });
-    this.#showContacts();
-    this.#showForce();
+    const sides = contacts.flatMap((c) => [c.a, c.b]).filter((side) => side);
+    if (sides.length > 0 || this.#patched) {
+      this.#bodies.forEach((body, index) => body.pieces.fill(body.patch.geometry, sides.filter((side) => side.body === index)));
+    }
+    this.#patched = sides.length > 0;
+    this.#drawContacts();
+  }
+
+  /// From the middle of the contacts. share: of the longest arrow; 0 where there is none to show.
+  showForce(force, share) {
+    const direction = new Vector3().fromArray(force);
+    this.#arrow.visible = share > 0 && direction.lengthSq() > 0 && this.#contacts.length > 0;
+    if (!this.#arrow.visible) return;
+    this.#arrow.position.copy(this.#contactCentre());
+    this.#arrow.setDirection(direction.normalize());
+    this.#arrow.setLength((0.15 + 0.65 * Math.min(share, 1)) * this.size, 0.12 * this.size, 0.07 * this.size);
+  }
+
+  /// Once everything is in its place.
+  draw() {
     this.#draw();
+  }
+
+  /// Of the force's arrow, in pixels of the host; null where there is none in sight.
+  arrowTip() {
+    if (!this.#arrow.visible) return null;
+    const tip = new Vector3(0, this.#arrow.cone.position.y, 0).applyQuaternion(this.#arrow.quaternion);
+    return this.pixelOf(tip.add(this.#arrow.position));
+  }
+
+  /// Of a point in the scene; null where it is behind the viewer.
+  pixelOf(point) {
+    const { x, y, z } = point.clone().project(this.#camera);
+    if (z > 1) return null;
+    return { x: ((x + 1) / 2) * this.host.clientWidth, y: ((1 - y) / 2) * this.host.clientHeight };
+  }
+
+  get camera() {
+    return this.#camera;
+  }
+
+  /// Where a body is drawn: {position, quaternion}.
+  poseOf(index) {
+    return this.#bodies[index].group;
+  }
+
+  /// The drawn surface of a body, for what is pointed at.
+  meshOf(index) {
+    return this.#bodies[index].mesh;
+  }
+
+  /// More to draw.
+  add(...objects) {
+    this.#scene.add(...objects);
   }
 
   setLook(index, look) {
@@ -180,35 +226,25 @@ export class Stage {
     }
   }
 
-  #showContacts() {
+  #drawContacts() {
     const points = new Float32Array(3 * this.#contacts.length);
     const colours = new Float32Array(points.length);
     const gap = new Color(style('--ink'));
     const overlap = new Color(style('--overlap'));
-    this.#contacts.forEach(({ a, b, distance }, i) => {
-      for (let k = 0; k < 3; ++k) points[3 * i + k] = (a.point[k] + b.point[k]) / 2;
+    const normals = [];
+    this.#contacts.forEach(({ point, distance, normal }, i) => {
+      points.set(point, 3 * i);
       (distance < 0 ? overlap : gap).toArray(colours, 3 * i);
+      if (normal) normals.push(...point, ...point.map((x, k) => x + 0.12 * this.size * normal[k]));
     });
-    this.#contactPoints.geometry.setAttribute('position', new BufferAttribute(points, 3));
-    this.#contactPoints.geometry.setAttribute('color', new BufferAttribute(colours, 3));
-  }
-
-  /// From the middle of the contacts; its length is the force's share of the largest one.
-  #showForce() {
-    const force = new Vector3().fromArray(this.forceAt(this.#frame));
-    const largest = Math.hypot(...this.forceAt(this.strongestFrame()));
-    const length = force.length();
-    this.#arrow.visible = length > 0 && largest > 0 && this.#contacts.length > 0;
-    if (!this.#arrow.visible) return;
-    const drawn = (0.15 + 0.65 * (length / largest)) * this.size;
-    this.#arrow.position.copy(this.#contactCentre());
-    this.#arrow.setDirection(force.divideScalar(length));
-    this.#arrow.setLength(drawn, 0.12 * this.size, 0.07 * this.size);
+    refill(this.#contactPoints.geometry, 'position', points);
+    refill(this.#contactPoints.geometry, 'color', colours);
+    refill(this.#normals.geometry, 'position', new Float32Array(normals));
   }
 
   #contactCentre() {
     const centre = new Vector3();
-    for (const { a } of this.#contacts) centre.add(new Vector3().fromArray(a.point));
+    for (const { point } of this.#contacts) centre.add(new Vector3().fromArray(point));
     return centre.divideScalar(Math.max(this.#contacts.length, 1));
   }
 
@@ -239,7 +275,8 @@ export class Stage {
     this.#scene.background = new Color(style('--paper'));
     this.#bodies.forEach(({ mesh }, index) => mesh.material.color.set(style(`--body-${index % 3}`)));
     this.#arrow.setColor(new Color(style('--series-3')));
-    this.#showContacts();
+    this.#normals.material.color.set(style('--series-2'));
+    this.#drawContacts();
     this.#draw();
   }
 

@@ -19,6 +19,14 @@ export function fixed(value, digits) {
 export const percent = (share) => (share === null ? '–' : `${number(100 * share)} %`);
 export const millimetres = (metres) => (metres === null ? '–' : `${number(1e3 * metres)} mm`);
 
+/// In the unit that suits it.
+export function length(metres) {
+  if (metres === null || Number.isNaN(metres)) return '–';
+  const size = Math.abs(metres);
+  if (size >= 1e-4 || size === 0) return millimetres(metres);
+  return size >= 1e-7 ? `${number(1e6 * metres)} µm` : `${number(1e9 * metres)} nm`;
+}
+
 export function duration(us) {
   if (us === null || Number.isNaN(us)) return 'not timed';
   if (us < 1) return `${number(us * 1e3)} ns`;

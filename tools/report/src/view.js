@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The 3D view and its controls.
 import { counts, floats } from './data.js';
-import { Stage } from './stage.js';
+import { addBodyChoices } from './looks.js';
+import { RecordedStage } from './recorded_stage.js';
 import { fixed, millimetres, number } from './units.js';
 
 const at = (id) => document.getElementById(id);
@@ -61,19 +62,6 @@ function describe(view, data, frame, contacts, found, stage) {
   );
 }
 
-function addBodyChoices(view, stage) {
-  view.bodies.forEach((body, index) => {
-    const label = document.createElement('label');
-    const choice = document.createElement('select');
-    for (const look of ['solid', 'see-through', 'hidden']) choice.add(new Option(look, look));
-    choice.value = index === view.tool ? 'see-through' : 'solid';
-    choice.addEventListener('change', () => stage.setLook(index, choice.value));
-    stage.setLook(index, choice.value);
-    label.append(`${body.name} `, choice);
-    at('bodies').append(label);
-  });
-}
-
 function addLegend(view, stage) {
   const levels = Math.max(...view.images.map((image) => image.levels));
   const entry = (colour, text) => {
@@ -126,13 +114,13 @@ export function showView(data, playhead) {
   const contacts = new Contacts(view.contacts);
   let stage;
   try {
-    stage = new Stage(at('stage'), view, floats(data.frames.t_s));
+    stage = new RecordedStage(at('stage'), view, floats(data.frames.t_s));
   } catch {
     at('stage').textContent = 'This browser does not show 3D (WebGL is off or missing).';
     return;
   }
   addTransport(playhead);
-  addBodyChoices(view, stage);
+  addBodyChoices(at('bodies'), view, stage);
   addLegend(view, stage);
   const show = (frame) => {
     const shown = contacts.ofFrame(frame);

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The device of `palpate run`.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "hal/device.hpp"
+#include "hal/mock/follower.hpp"
+#include "tools/palpate/device_choice.hpp"
+#include "tools/palpate/scene_engine.hpp"
+
+namespace palpate::cli {
+
+struct RunDevice {
+  std::unique_ptr<hal::Device> device;
+  /// Where the tool is led, from one other thread; empty: the device does not take that.
+  std::function<void(const hal::mock::Lead&)> lead;
+};
+
+struct RunDeviceOptions {
+  std::string name;  ///< as the user gave it
+  std::filesystem::path firmware;
+  int loop_priority = 0;
+  double rate_Hz = 1000;  ///< of the loop
+};
+
+/// Whether it is a simulated hand.
+[[nodiscard]] bool is_mock_hand(const std::string& device);
+
+/// Not yet open. Throws Failure as make_usb_device() does, and kUsage where the mouse has nothing
+/// to pull by.
+[[nodiscard]] RunDevice make_run_device(const RunDeviceOptions& options, const config::Scene& scene,
+                                        const SceneEngine& engine, hal::Clock& clock);
+
+}  // namespace palpate::cli
