@@ -23,6 +23,7 @@ endif()
 if(PALPATE_HOST AND NOT PALPATE_SANITIZE AND NOT PALPATE_COVERAGE AND NOT PALPATE_FUZZ)
   add_test(NAME install.find_package
     COMMAND "${CMAKE_CURRENT_SOURCE_DIR}/gates/install" "${CMAKE_COMMAND}" "${PROJECT_BINARY_DIR}" "${CMAKE_NM}")
+  set_tests_properties(install.find_package PROPERTIES RESOURCE_LOCK install)
 endif()
 get_property(gates DIRECTORY PROPERTY TESTS)
 foreach(gate rt_core.symbols rt_core.stack install.find_package)

@@ -5,7 +5,7 @@ if(TARGET palpate_python)
     "PALPATE_DATA=${PROJECT_SOURCE_DIR}/tests/data;PALPATE_DOCS=${PROJECT_SOURCE_DIR}/docs;PALPATE_EXECUTABLE=$<TARGET_FILE:palpate>")
   foreach(name IN ITEMS engine files)
     add_test(NAME python.${name}
-      COMMAND "${Python_EXECUTABLE}" -W error "${CMAKE_CURRENT_SOURCE_DIR}/python/test_${name}.py")
+      COMMAND "${PALPATE_PYTHON}" -W error "${CMAKE_CURRENT_SOURCE_DIR}/python/test_${name}.py")
     set_tests_properties(python.${name} PROPERTIES LABELS unit TIMEOUT 120 ENVIRONMENT "${python_environment}")
   endforeach()
 endif()

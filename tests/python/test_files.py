@@ -142,7 +142,8 @@ class Traces(Files):
         self.assertTrue((np.linalg.norm(trace.records["sent_force_N"], axis=1) <= 2.001).all())
 
     def test_what_is_no_trace_is_refused(self):
-        whole = open(self.trace(), "rb").read()
+        with open(self.trace(), "rb") as file:
+            whole = file.read()
         for name, text, message in (
             ("short", whole[:-1], "cut short"),
             ("long", whole + b"1", "cut short"),
