@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "tools/palpate/json_number.hpp"
+#include "tools/palpate/report_run.hpp"
 #include "tools/palpate/report_words.hpp"
 
 namespace palpate::cli {
@@ -168,6 +169,7 @@ nlohmann::ordered_json report_json(const ReportInput& input, const Frames& frame
   if (input.run) {
     out["late_us"] = packed(frames.peak(
         [&](std::size_t tick) { return static_cast<double>(input.run->latency_ns[tick]) * 1e-3; }));
+    out["run"] = report_run_json(input, frames);
   }
   return out;
 }

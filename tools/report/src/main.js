@@ -3,7 +3,7 @@
 import './style.css';
 import { readData } from './data.js';
 import { Playhead } from './playhead.js';
-import { showCertificate, showLatency, showProfiles } from './ticks.js';
+import { showCertificate, showLatency, showProfiles, showRun } from './ticks.js';
 import { showTrade } from './trade.js';
 import { showView } from './view.js';
 
@@ -29,5 +29,6 @@ const playhead = new Playhead(data.frames?.count ?? 1);
 if (data.settings.length > 0) showTrade(document.getElementById('trade'), data.settings);
 if (data.view) showView(data, playhead);
 if (data.lines.length > 0) showProfiles(data, playhead);
-if (data.latency) showLatency(data);
-showCertificate(data);
+if (data.run) showRun(data, playhead);
+if (data.latency) showLatency(data, playhead);
+showCertificate(data, playhead);
