@@ -14,7 +14,7 @@ time_s = np.arange(TICKS) / 1000
 turn = 0.6 * np.sin(np.pi * time_s / time_s[-1])
 poses = np.zeros((TICKS, 2, 7))
 poses[:, 0, 0] = 0.006 * np.sin(2 * np.pi * time_s / time_s[-1])
-poses[:, 0, 2] = 0.0155
+poses[:, 0, 2] = 0.0159
 poses[:, 0, 3], poses[:, 0, 6] = np.cos(turn / 2), np.sin(turn / 2)
 poses[:, 1, 3] = 1
 

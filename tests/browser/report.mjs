@@ -124,6 +124,23 @@ async function checkZoom(browser) {
   assert.deepEqual(new Set(await ends()), before);
 }
 
+/// A click on a title sorts by it, a second one the other way; what has no figure stays last.
+async function checkTable(browser) {
+  const column = (title) =>
+    browser.value(`(() => {
+      const heads = [...document.querySelectorAll('#settings th')];
+      const i = heads.findIndex((head) => head.textContent === '${title}');
+      heads[i].querySelector('button').click();
+      return [...document.querySelectorAll('#settings tbody tr')].map((row) => row.cells[i].textContent);
+    })()`);
+  const up = await column('Front');
+  const down = await column('Front');
+  const figures = (cells) => cells.filter((cell) => cell !== '–').map((cell) => Number(cell.replaceAll(',', '')));
+  assert.ok(figures(up).length > 2);
+  assert.deepEqual(figures(up), figures(up).toSorted((a, b) => a - b));
+  assert.deepEqual(figures(down), figures(up).toReversed());
+}
+
 async function checkLooks(browser, name) {
   const paper = () => browser.value('getComputedStyle(document.body).backgroundColor');
   await browser.scheme('light');
@@ -150,6 +167,7 @@ async function checkReport(browser, source, plots, sections) {
   await checkPlots(browser, plots);
   await checkSlider(browser);
   await checkZoom(browser);
+  if (plots.includes('#trade .plot')) await checkTable(browser);
   await checkLooks(browser, source);
   assert.ok((await browser.value('document.querySelectorAll("#words li").length')) > 1);
   assert.equal(await browser.value('document.querySelectorAll("img").length'), 0, 'a name became markup');
