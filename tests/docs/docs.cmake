@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The commands of pages, as they are written there.
-if(PALPATE_HOST AND PALPATE_PYTHON AND NOT PALPATE_SANITIZE)
+if(PALPATE_HOST AND PALPATE_PYTHON AND NOT PALPATE_SANITIZE AND NOT PALPATE_COVERAGE AND NOT PALPATE_FUZZ)
   set(run_page "${PALPATE_PYTHON}" "${CMAKE_CURRENT_SOURCE_DIR}/docs/run_page.py" "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}")
   set(docs_quick README.md examples/README.md docs/PYTHON.md docs/REPORT.md docs/SWEEP.md docs/TRIED.md docs/TUTORIAL.md)
   # These bake the largest models.
