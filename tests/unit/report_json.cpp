@@ -150,6 +150,16 @@ TEST(ReportJson, gaps_of_a_trace_that_lost_ticks_are_no_missed_deadlines) {
   EXPECT_EQ(report_json(input, frames_of(3)).at("run").at("marks").size(), 1u);
 }
 
+TEST(ReportJson, plots_show_every_tick_of_a_minute) {
+  EXPECT_EQ(plot_frames_of(60'000, 1).stride, 1u);
+  EXPECT_EQ(plot_frames_of(60'000, 8).stride, 5u);
+  EXPECT_EQ(plot_frames_of(5'000, 100).stride, 1u);
+  const auto made = frames_json(run_of_three(), frames_of(3, 2));
+  EXPECT_EQ(made.at("count"), 2);
+  EXPECT_EQ(made.at("stride"), 2);
+  EXPECT_EQ(floats(made.at("t_s")), (std::vector<float>{0, 0.002f}));
+}
+
 TEST(ReportJson, settings_without_error_are_drawn_below_all_others) {
   ReportInput input;
   input.kind = ReportKind::sweep;

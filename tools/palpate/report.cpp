@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `palpate report`: one HTML file from a sweep, a replay or a run (docs/REPORT.md).
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -33,11 +34,19 @@ void write_page(const ReportArguments& a) {
   ReportInput input = read_report_input(a.source, a.hints);
   if (a.no_view) input.view.reset();
   const bake::Progress show = progress(a.quiet);
-  const Frames frames =
-      input.lines.empty() ? Frames() : frames_of(input.lines.front().ticks.size());
+  const std::size_t ticks = input.lines.empty() ? 1 : input.lines.front().ticks.size();
   nlohmann::ordered_json view;
-  if (input.view) view = view_json(*input.view, contacts_of(input, frames, show), frames);
-  nlohmann::ordered_json data = report_json(input, frames);
+  if (input.view) {
+    const Frames frames = frames_of(ticks);
+    view = view_json(*input.view, contacts_of(input, frames, show), frames);
+    view["frames"] = frames_json(input, frames);
+    if (frames.stride > 1) {
+      input.notes.push_back("Of " + std::to_string(ticks) + " ticks one in " +
+                            std::to_string(frames.stride) + " is a frame of the 3D view.");
+    }
+  }
+  const std::size_t lines = std::max<std::size_t>(input.lines.size(), 1);
+  nlohmann::ordered_json data = report_json(input, plot_frames_of(ticks, lines));
   data["view"] = std::move(view);
   write_file(a.output, fill_page(page, data));
 }

@@ -25,7 +25,9 @@ document.getElementById('made').textContent = `${kinds[data.kind]}. Made by palp
 fillList('words', data.summary);
 fillList('notes', data.notes);
 
-const playhead = new Playhead(data.frames?.count ?? 1);
+// The frames of the 3D view; plots may show more of the ticks.
+data.shown = data.view?.frames ?? data.frames;
+const playhead = new Playhead(data.shown?.count ?? 1);
 if (data.settings.length > 0) showTrade(document.getElementById('trade'), data.settings);
 if (data.view) showView(data, playhead);
 if (data.lines.length > 0) showProfiles(data, playhead);

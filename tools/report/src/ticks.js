@@ -16,13 +16,13 @@ function overTime(data, playhead) {
     x: floats(data.frames.t_s),
     xLabel: 'time (s)',
     overTime: true,
-    onClick: (index) => playhead.set(index),
+    onClick: (index) => playhead.set((index * data.frames.stride) / data.shown.stride),
     marks: data.run?.marks ?? [],
   };
 }
 
 function follow(data, playhead, plots) {
-  const times = floats(data.frames.t_s);
+  const times = floats(data.shown.t_s);
   const show = (frame) => plots.forEach((plot) => plot.show(times[frame]));
   playhead.onChange(show);
   show(playhead.frame);

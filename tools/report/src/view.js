@@ -45,7 +45,7 @@ function levelsOf(contacts, body) {
 }
 
 function describe(view, data, frame, contacts, found, stage) {
-  const tick = frame * data.frames.stride;
+  const tick = frame * data.shown.stride;
   const force = Math.hypot(...stage.forceAt(frame));
   const position = stage.positionOf(view.tool, frame);
   const least = contacts.reduce((d, c) => Math.min(d, c.distance), Infinity);
@@ -146,12 +146,12 @@ export function showView(data, playhead) {
   const contacts = new Contacts(view.contacts);
   let stage;
   try {
-    stage = new Stage(at('stage'), view, floats(data.frames.t_s));
+    stage = new Stage(at('stage'), view, floats(data.shown.t_s));
   } catch {
     at('stage').textContent = 'This browser does not show 3D (WebGL is off or missing).';
     return;
   }
-  addTransport(playhead, floats(data.frames.t_s));
+  addTransport(playhead, floats(data.shown.t_s));
   addBodyChoices(view, stage);
   addLegend(view, stage);
   const show = (frame) => {
