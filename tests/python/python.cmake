@@ -6,6 +6,6 @@ if(TARGET palpate_python)
   foreach(name IN ITEMS engine files)
     add_test(NAME python.${name}
       COMMAND "${PALPATE_PYTHON}" -W error "${CMAKE_CURRENT_SOURCE_DIR}/python/test_${name}.py")
-    set_tests_properties(python.${name} PROPERTIES LABELS unit TIMEOUT 120 ENVIRONMENT "${python_environment}")
+    set_tests_properties(python.${name} PROPERTIES LABELS unit TIMEOUT 600 ENVIRONMENT "${python_environment}")
   endforeach()
 endif()
