@@ -104,6 +104,16 @@ export class Chromium {
     await this.send('Input.dispatchMouseEvent', { type, x, y, button, buttons, modifiers: shift ? 8 : 0, clickCount: 1, ...wheel });
   }
 
+  /// The left button goes down at one place of the window and up at another.
+  async drag([fromX, fromY], [toX, toY]) {
+    const mouse = (type, x, y, buttons) => this.send('Input.dispatchMouseEvent', { type, x, y, button: 'left', buttons, clickCount: 1 });
+    await mouse('mouseMoved', fromX, fromY, 0);
+    await mouse('mousePressed', fromX, fromY, 1);
+    for (let i = 1; i <= 4; ++i) await mouse('mouseMoved', fromX + ((toX - fromX) * i) / 4, fromY + ((toY - fromY) * i) / 4, 1);
+    await mouse('mouseReleased', toX, toY, 0);
+    await this.drawn();
+  }
+
   async resize(width, height) {
     await this.send('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: width < 600 });
     await this.drawn();

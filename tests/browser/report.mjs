@@ -108,6 +108,39 @@ async function checkSlider(browser) {
   assert.equal(new Set(lines).size, 1);
 }
 
+/// A drag over one plot zooms all plots over time, and a double click shows all of it again.
+async function checkZoom(browser) {
+  const ends = () => browser.value('[...document.querySelectorAll("[data-from]")].map((plot) => `${plot.dataset.from} ${plot.dataset.to}`)');
+  const before = new Set(await ends());
+  assert.equal(before.size, 1, 'plots over time show different stretches');
+  await browser.value('document.getElementById("force").scrollIntoView()');
+  const box = await browser.value('(({ left, top, width, height }) => ({ left, top, width, height }))(document.querySelector("#force .u-over").getBoundingClientRect())');
+  const middle = box.top + box.height / 2;
+  await browser.drag([box.left + 0.3 * box.width, middle], [box.left + 0.6 * box.width, middle]);
+  const zoomed = new Set(await ends());
+  assert.equal(zoomed.size, 1, 'zoom is not shared');
+  assert.ok(!before.has([...zoomed][0]), 'a drag does not zoom');
+  await browser.value('document.querySelector("#force .u-over").dispatchEvent(new MouseEvent("dblclick", { bubbles: true }))');
+  assert.deepEqual(new Set(await ends()), before);
+}
+
+/// A click on a title sorts by it, a second one the other way; what has no figure stays last.
+async function checkTable(browser) {
+  const column = (title) =>
+    browser.value(`(() => {
+      const heads = [...document.querySelectorAll('#settings th')];
+      const i = heads.findIndex((head) => head.textContent === '${title}');
+      heads[i].querySelector('button').click();
+      return [...document.querySelectorAll('#settings tbody tr')].map((row) => row.cells[i].textContent);
+    })()`);
+  const up = await column('Front');
+  const down = await column('Front');
+  const figures = (cells) => cells.filter((cell) => cell !== '–').map((cell) => Number(cell.replaceAll(',', '')));
+  assert.ok(figures(up).length > 2);
+  assert.deepEqual(figures(up), figures(up).toSorted((a, b) => a - b));
+  assert.deepEqual(figures(down), figures(up).toReversed());
+}
+
 async function checkLooks(browser, name) {
   const paper = () => browser.value('getComputedStyle(document.body).backgroundColor');
   await browser.scheme('light');
@@ -133,6 +166,8 @@ async function checkReport(browser, source, plots, sections) {
   assert.deepEqual(shown, sections, source);
   await checkPlots(browser, plots);
   await checkSlider(browser);
+  await checkZoom(browser);
+  if (plots.includes('#trade .plot')) await checkTable(browser);
   await checkLooks(browser, source);
   assert.ok((await browser.value('document.querySelectorAll("#words li").length')) > 1);
   assert.equal(await browser.value('document.querySelectorAll("img").length'), 0, 'a name became markup');
@@ -145,11 +180,13 @@ try {
   makeData();
   browser = await Chromium.open(program);
   await browser.resize(1200, 900);
-  const perTick = ['#force', '#time', '#front', '#histogram', '#timeline', '#bounds'];
+  const perTick = ['#force', '#time', '#front', '#contacts', '#histogram', '#timeline', '#bounds'];
   const sections = ['view', 'profiles', 'latency', 'certificate'];
+  const ofRun = ['#sent', '#torque', '#position', '#energy', '#age'];
   await checkReport(browser, 'replay', [...perTick, '#scatter'], ['summary', ...sections]);
   await checkReport(browser, 'sweep', ['#trade .plot', ...perTick, '#scatter'], ['summary', 'trade', ...sections]);
-  await checkReport(browser, 'run.trace', ['#time', '#histogram', '#timeline', '#bounds'], ['summary', ...sections]);
+  const runSections = ['summary', 'view', 'profiles', 'run', 'latency', 'certificate'];
+  await checkReport(browser, 'run.trace', ['#time', '#histogram', '#timeline', '#bounds', ...ofRun], runSections);
 } finally {
   await browser?.close();
   rmSync(folder, { recursive: true, force: true });

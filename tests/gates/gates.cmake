@@ -23,6 +23,16 @@ endif()
 if(PALPATE_HOST AND NOT PALPATE_SANITIZE AND NOT PALPATE_COVERAGE AND NOT PALPATE_FUZZ)
   add_test(NAME install.find_package
     COMMAND "${CMAKE_CURRENT_SOURCE_DIR}/gates/install" "${CMAKE_COMMAND}" "${PROJECT_BINARY_DIR}" "${CMAKE_NM}")
+  set_tests_properties(install.find_package PROPERTIES RESOURCE_LOCK install)
+endif()
+# Debian packages of it, where Debian's tools are.
+find_program(PALPATE_SHLIBDEPS dpkg-shlibdeps)
+if(PALPATE_SHLIBDEPS AND PALPATE_HOST AND NOT PALPATE_SANITIZE AND NOT PALPATE_COVERAGE AND NOT PALPATE_FUZZ)
+  add_test(NAME install.packages
+    COMMAND "${CMAKE_CURRENT_SOURCE_DIR}/gates/packages" "${CMAKE_COMMAND}" "${PROJECT_BINARY_DIR}" "${PALPATE_PYTHON}")
+  set_tests_properties(install.packages PROPERTIES LABELS long RESOURCE_LOCK install FIXTURES_SETUP packages)
+  add_test(NAME install.bare_debian COMMAND "${CMAKE_CURRENT_SOURCE_DIR}/gates/bare_debian" "${PROJECT_BINARY_DIR}")
+  set_tests_properties(install.bare_debian PROPERTIES LABELS long FIXTURES_REQUIRED packages SKIP_RETURN_CODE 77 TIMEOUT 1800)
 endif()
 get_property(gates DIRECTORY PROPERTY TESTS)
 foreach(gate rt_core.symbols rt_core.stack install.find_package)

@@ -117,7 +117,18 @@ TEST_F(Replay, Cubes_approaching_give_distance_and_force) {
     EXPECT_NEAR(number(table[i][8]), 1.0, 1e-6);  // from the wall to the tool
     EXPECT_NEAR(number(table[i][2]) - number(table[i][5]), number(table[i][11]), 1e-8);
   }
-  EXPECT_EQ(folder_.files(), 5u);
+  EXPECT_EQ(folder_.files(), 6u);
+  const auto about = nlohmann::json::parse(test::read_file(at("ticks.about.json")));
+  EXPECT_EQ(about.at("poses"), at("poses.csv"));
+  EXPECT_TRUE(std::filesystem::exists(about.at("scene").get<std::string>()));
+}
+
+TEST_F(Replay, Into_a_pipe_leaves_no_file_beside_it) {
+  const test::Outcome outcome =
+      test::run({PALPATE_EXECUTABLE, "replay", at("scene.toml"), "--poses", at("poses.csv"), "-o",
+                 "/dev/null", "--quiet"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists("/dev/null.about.json"));
 }
 
 /// Down on the wall, and along it by 0.05 mm a tick.

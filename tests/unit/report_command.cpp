@@ -45,7 +45,7 @@ class Report : public ::testing::Test {
     EXPECT_NE(outcome.err.find(what), std::string::npos) << outcome.err;
     EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1) << outcome.err;
     EXPECT_FALSE(fs::exists(at("report.html")));
-    EXPECT_EQ(folder_.files(), 5u);  // what the set-up made: no temporary ones
+    EXPECT_EQ(folder_.files(), 6u);  // what the set-up made: no temporary ones
   }
 
   test::TemporaryFolder folder_;

@@ -123,6 +123,29 @@ TEST_F(ReportFolder, poses_of_another_motion_are_no_view) {
   EXPECT_NE(input.notes[0].find("7 poses for 6 ticks"), std::string::npos);
 }
 
+/// What a replay writes beside its table.
+std::string about_json(const std::filesystem::path& scene, const std::filesystem::path& poses) {
+  return R"({"scene": ")" + scene.string() + R"(", "poses": ")" + poses.string() + "\"}";
+}
+
+TEST_F(ReportFolder, replays_say_which_scene_and_poses_they_are_of) {
+  const test::TemporaryFolder other;
+  for (const char* name : {"cube.palp", "cubes.toml", "poses.csv"}) {
+    std::filesystem::rename(folder_.path() / name, other.path() / name);
+  }
+  EXPECT_FALSE(read().view);
+  const std::string about = about_json(other.path() / "cubes.toml", other.path() / "poses.csv");
+  folder_.write("fast.about.json", about);
+  folder_.write("slow.about.json", about);
+  EXPECT_TRUE(read().view);
+  // Where they do not agree, or what they name is gone, the folder's own files count.
+  folder_.write("slow.about.json", about_json(other.path() / "cubes.toml", "/other.csv"));
+  EXPECT_FALSE(read().view);
+  folder_.write("fast.about.json", about_json("/gone.toml", "/gone.csv"));
+  folder_.write("slow.about.json", "these are words");
+  EXPECT_FALSE(read().view);
+}
+
 TEST_F(ReportFolder, sweep_shows_exact_runs_and_best_trades_of_many) {
   folder_.write("sweep.json", test::read_file(PALPATE_TEST_DATA "/sweep.json"));
   std::filesystem::remove(folder_.path() / "fast.csv");

@@ -107,6 +107,59 @@ TEST(ReportJson, long_recordings_say_what_was_left_out) {
   EXPECT_EQ(floats(made.at("lines").at(0).at("force_N")).size(), made.at("frames").at("count"));
 }
 
+/// Ticks 0, 1 and 3 of a loop of 1 kHz; the last one has a fault.
+ReportInput run_of_three() {
+  ReportInput input;
+  input.kind = ReportKind::run;
+  input.lines.resize(1);
+  input.lines[0].ticks = test::some_ticks(3);
+  ReportRun& run = input.run.emplace();
+  run.rate_Hz = 1000;
+  for (const std::uint64_t period : {0u, 1u, 3u}) {
+    realtime::TraceRecord& r = run.records.emplace_back();
+    r.time_ns = period * 1'000'000;
+    r.position_m = {0, 0, 0.5 + 0.001 * double(period)};
+    r.sent_force_N = {3 * float(period), 0, 4 * float(period)};
+    r.state_age_ns = 250'000;
+    r.energy_J = 0.002;
+    r.faults = period == 3 ? 0b101 : 0;
+    run.latency_ns.push_back(1000);
+  }
+  return input;
+}
+
+TEST(ReportJson, run_holds_what_was_sent_and_what_went_wrong) {
+  const auto run = report_json(run_of_three(), frames_of(3)).at("run");
+  EXPECT_EQ(run.at("period_us"), 1000);
+  EXPECT_TRUE(run.at("budget_us").is_null());  // no scene
+  EXPECT_EQ(floats(run.at("sent_N")), (std::vector<float>{0, 5, 15}));
+  EXPECT_EQ(floats(run.at("sent_xyz_N").at(2)), (std::vector<float>{0, 4, 12}));
+  EXPECT_NEAR(double(floats(run.at("moved_xyz_mm").at(2))[2]), 3, 1e-5);
+  EXPECT_EQ(floats(run.at("energy_mJ"))[0], 2);
+  EXPECT_EQ(floats(run.at("age_us"))[0], 250);
+  const auto& marks = run.at("marks");
+  ASSERT_EQ(marks.size(), 2u);
+  EXPECT_TRUE(marks.at(0).at("fault").is_null());  // a deadline
+  EXPECT_EQ(marks.at(1).at("fault"), "stale_state, missed_deadlines");
+  EXPECT_EQ(marks.at(1).at("t_s"), 0.003);
+}
+
+TEST(ReportJson, gaps_of_a_trace_that_lost_ticks_are_no_missed_deadlines) {
+  ReportInput input = run_of_three();
+  input.run->dropped = 1;
+  EXPECT_EQ(report_json(input, frames_of(3)).at("run").at("marks").size(), 1u);
+}
+
+TEST(ReportJson, plots_show_every_tick_of_a_minute) {
+  EXPECT_EQ(plot_frames_of(60'000, 1).stride, 1u);
+  EXPECT_EQ(plot_frames_of(60'000, 8).stride, 5u);
+  EXPECT_EQ(plot_frames_of(5'000, 100).stride, 1u);
+  const auto made = frames_json(run_of_three(), frames_of(3, 2));
+  EXPECT_EQ(made.at("count"), 2);
+  EXPECT_EQ(made.at("stride"), 2);
+  EXPECT_EQ(floats(made.at("t_s")), (std::vector<float>{0, 0.002f}));
+}
+
 TEST(ReportJson, settings_without_error_are_drawn_below_all_others) {
   ReportInput input;
   input.kind = ReportKind::sweep;

@@ -9,9 +9,9 @@ namespace palpate::cli {
 namespace {
 
 constexpr std::string_view kOfSomeFormat[] = {
-    ".ply", ".stl",  ".obj", ".off", ".3mf", ".gltf", ".glb", ".step", ".stp", ".wrl", ".dae",
-    ".png", ".jpg",  ".gif", ".bmp", ".tif", ".tiff", ".svg", ".webp", ".pdf", ".ps",  ".jpeg",
-    ".csv", ".toml", ".bin", ".hex", ".elf", ".dfu",  ".c",   ".html", ".txt", ".json"};
+    ".ply", ".stl",  ".obj",  ".off", ".3mf", ".gltf", ".glb", ".step", ".stp",  ".wrl", ".dae",
+    ".png", ".jpg",  ".gif",  ".bmp", ".tif", ".tiff", ".svg", ".webp", ".pdf",  ".ps",  ".jpeg",
+    ".csv", ".mcap", ".toml", ".bin", ".hex", ".elf",  ".dfu", ".c",    ".html", ".txt", ".json"};
 
 std::string small_letters(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

@@ -130,6 +130,28 @@ class ContactTable {
   std::optional<OutputFile> file_;
 };
 
+/// What a table is of, in a file beside it, for `palpate report`.
+class About {
+ public:
+  explicit About(const ReplayArguments& a) {
+    const std::filesystem::path table(a.ticks);
+    if (std::filesystem::exists(table) && !std::filesystem::is_regular_file(table))
+      return;  // a pipe
+    const nlohmann::ordered_json json = {
+        {"scene", std::filesystem::absolute(a.scene).lexically_normal().string()},
+        {"poses", std::filesystem::absolute(a.poses).lexically_normal().string()},
+        {"version", PALPATE_VERSION}};
+    file_.emplace(std::filesystem::path(table).replace_extension(".about.json"));
+    file_->append(json.dump(1) + "\n");
+  }
+  void commit() {
+    if (file_) file_->commit();
+  }
+
+ private:
+  std::optional<OutputFile> file_;
+};
+
 void run(const ReplayArguments& a) {
   const config::Scene scene = load(a);
   const PoseTrack track = read_poses(a.poses, scene);
@@ -150,8 +172,10 @@ void run(const ReplayArguments& a) {
   }
   const std::string ticks = ticks_csv(recording.ticks);
   OutputFile ticks_file(a.ticks, std::as_bytes(std::span(ticks)));
-  contacts.commit();  // both files or none
+  About about(a);
+  contacts.commit();  // all files or none
   ticks_file.commit();
+  about.commit();
   if (!a.quiet && !recording.start_overlap.empty()) {
     std::fprintf(stderr, "Note: %s.\n", recording.start_overlap.c_str());
   }

@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 /// Files of each kind, by name.
 struct Found {
   std::vector<fs::path> ticks, contacts, poses, scenes;
+  std::vector<fs::path> abouts;  ///< what `palpate replay` says of its tables
 };
 
 std::string first_line(const fs::path& file) {
@@ -33,6 +34,7 @@ std::string first_line(const fs::path& file) {
 
 void sort_in(const fs::path& file, Found& out) {
   if (file.extension() == ".toml") out.scenes.push_back(file);
+  if (file.filename().string().ends_with(".about.json")) out.abouts.push_back(file);
   if (file.extension() != ".csv") return;
   const std::string header = first_line(file);
   if (header == kTicksHeader) out.ticks.push_back(file);
@@ -49,7 +51,7 @@ Found look_into(const fs::path& folder) {
       if (entry.is_regular_file(absent)) sort_in(entry.path(), found);
     }
   }
-  for (auto* files : {&found.ticks, &found.contacts, &found.poses, &found.scenes}) {
+  for (auto* files : {&found.ticks, &found.contacts, &found.poses, &found.scenes, &found.abouts}) {
     std::sort(files->begin(), files->end());
   }
   return found;
@@ -111,15 +113,33 @@ void read_lines(const std::vector<Table>& tables, ReportInput& out) {
   }
 }
 
-/// What a sweep says of itself; an empty object where there is no such file.
-nlohmann::json about(const fs::path& folder) {
+/// An empty object where there is no such file.
+nlohmann::json object_in(const fs::path& file) {
   std::string text;
-  if (config::read_text(folder / "about.json", text)) return nlohmann::json::object();
+  if (config::read_text(file, text)) return nlohmann::json::object();
   auto json = nlohmann::json::parse(text, nullptr, false);
   return json.is_object() ? json : nlohmann::json::object();
 }
 
-/// What the command line names, else what the sweep was made from, else the folder's only one.
+/// What a sweep says of itself, or else what replays say of theirs: as far as they agree, and as
+/// far as it is still there, for a folder may have been moved.
+nlohmann::json about(const fs::path& folder, const Found& found) {
+  if (fs::exists(folder / "about.json")) return object_in(folder / "about.json");
+  nlohmann::json out = nlohmann::json::object();
+  for (const char* key : {"scene", "poses"}) {
+    std::set<std::string> named;
+    for (const fs::path& file : found.abouts) {
+      const nlohmann::json json = object_in(file);
+      if (json.contains(key) && json[key].is_string()) named.insert(json[key].get<std::string>());
+    }
+    std::error_code error;
+    if (named.size() == 1 && fs::exists(*named.begin(), error)) out[key] = *named.begin();
+  }
+  return out;
+}
+
+/// What the command line names, else what the sweep or replay was made from, else the folder's only
+/// one.
 fs::path choose(const fs::path& hint, const nlohmann::json& about, const char* key,
                 const std::vector<fs::path>& found) {
   if (!hint.empty()) return hint;
@@ -167,7 +187,7 @@ double largest_radius_m(const config::Scene& scene) {
 
 void read_view(const Found& found, const std::vector<Table>& tables, const fs::path& folder,
                const ReportHints& hints, ReportInput& out) {
-  const nlohmann::json json = about(folder);
+  const nlohmann::json json = about(folder, found);
   const fs::path scene = choose(hints.scene, json, "scene", found.scenes);
   const fs::path poses = choose(hints.poses, json, "poses", found.poses);
   if (scene.empty() || poses.empty()) {

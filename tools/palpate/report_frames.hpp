@@ -12,8 +12,10 @@
 
 namespace palpate::cli {
 
-/// Frames of one report at most: 40 bytes a frame and line, and more than a screen can show.
+/// Frames of one 3D view at most: 28 bytes a frame and body, and their contacts.
 inline constexpr std::size_t kMaxFrames = 5000;
+/// Frames of the plots of one report at most, over all its lines: who zooms in sees every tick.
+inline constexpr std::size_t kMaxPlotFrames = 100'000;
 
 /// Every stride-th tick, beginning with the first.
 struct Frames {
@@ -50,6 +52,10 @@ struct Frames {
 
 /// @param ticks, limit  >= 1
 Frames frames_of(std::size_t ticks, std::size_t limit = kMaxFrames);
+/// Those of the plots. @param lines  >= 1
+inline Frames plot_frames_of(std::size_t ticks, std::size_t lines) {
+  return frames_of(ticks, std::max(kMaxFrames, kMaxPlotFrames / lines));
+}
 
 /// How often each duration occurs, in bins of equal width on a logarithmic axis.
 struct DurationBins {

@@ -13,6 +13,7 @@
 #include "tools/palpate/poses.hpp"
 #include "tools/palpate/replay_csv.hpp"
 #include "tools/palpate/report_sweep.hpp"
+#include "tools/realtime/trace.hpp"
 
 namespace palpate::cli {
 
@@ -31,8 +32,9 @@ struct ReportRun {
   std::uint64_t missed = 0;   ///< periods that the loop skipped
   std::uint64_t dropped = 0;  ///< ticks that left no record
   double sent_force_max_N = 0;
-  std::vector<std::uint32_t> latency_ns;  ///< [ticks] wake-up after the time due
-  std::uint16_t faults = 0;               ///< TraceRecord::faults of all ticks together
+  std::vector<std::uint32_t> latency_ns;       ///< [ticks] wake-up after the time due
+  std::uint16_t faults = 0;                    ///< TraceRecord::faults of all ticks together
+  std::vector<realtime::TraceRecord> records;  ///< [ticks]
 };
 
 /// What the 3D view needs.

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "tools/palpate/json_number.hpp"
+#include "tools/palpate/report_run.hpp"
 #include "tools/palpate/report_words.hpp"
 
 namespace palpate::cli {
@@ -115,14 +116,6 @@ Json setting_json(const SweepPoint& p, double lower_edge) {
           {"pareto", p.pareto}};
 }
 
-Json frames_json(const ReportInput& input, const Frames& frames) {
-  const std::vector<TickRow>& ticks = input.lines.front().ticks;
-  return {{"count", frames.count},
-          {"stride", frames.stride},
-          {"ticks", frames.ticks},
-          {"t_s", packed(frames.sample([&](std::size_t tick) { return ticks[tick].t_s; }))}};
-}
-
 }  // namespace
 
 std::string base64(std::span<const std::byte> bytes) {
@@ -142,6 +135,14 @@ std::string base64(std::span<const std::byte> bytes) {
   return out;
 }
 
+nlohmann::ordered_json frames_json(const ReportInput& input, const Frames& frames) {
+  const std::vector<TickRow>& ticks = input.lines.front().ticks;
+  return {{"count", frames.count},
+          {"stride", frames.stride},
+          {"ticks", frames.ticks},
+          {"t_s", packed(frames.sample([&](std::size_t tick) { return ticks[tick].t_s; }))}};
+}
+
 nlohmann::ordered_json report_json(const ReportInput& input, const Frames& frames) {
   Json out;
   out["version"] = PALPATE_VERSION;
@@ -157,9 +158,9 @@ nlohmann::ordered_json report_json(const ReportInput& input, const Frames& frame
   out["lines"] = Json::array();
   if (input.lines.empty()) return out;
   if (frames.stride > 1) {
-    out["notes"].push_back("Of " + std::to_string(frames.ticks) + " ticks every " +
+    out["notes"].push_back("Of " + std::to_string(frames.ticks) + " ticks one in " +
                            std::to_string(frames.stride) +
-                           "th is a frame of the plots; times are the longest of each " +
+                           " is shown in the plots; times are the longest of each " +
                            std::to_string(frames.stride) + ".");
   }
   out["frames"] = frames_json(input, frames);
@@ -168,6 +169,7 @@ nlohmann::ordered_json report_json(const ReportInput& input, const Frames& frame
   if (input.run) {
     out["late_us"] = packed(frames.peak(
         [&](std::size_t tick) { return static_cast<double>(input.run->latency_ns[tick]) * 1e-3; }));
+    out["run"] = report_run_json(input, frames);
   }
   return out;
 }

@@ -26,11 +26,15 @@ std::string packed(const Range& values) {
   return base64(std::as_bytes(std::span(values)));
 }
 
-/// Everything but the view; @param frames  of input.lines, ignored where there are none
+/// Everything but the view. @param frames  of the plots, of input.lines; ignored where there are
+/// none
 nlohmann::ordered_json report_json(const ReportInput& input, const Frames& frames);
 
-/// The 3D view. Opens the scene's images: throws Failure(kRefused) where one is refused or does not
-/// have a piece that a contact names.
+/// How many frames, how many ticks each, and when: times of the first line. @param input  has lines
+nlohmann::ordered_json frames_json(const ReportInput& input, const Frames& frames);
+
+/// The 3D view but for its frames_json(). Opens the scene's images: throws Failure(kRefused) where
+/// one is refused or does not have a piece that a contact names.
 nlohmann::ordered_json view_json(const ReportScene& view, const ShownContacts& contacts,
                                  const Frames& frames);
 

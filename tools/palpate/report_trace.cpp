@@ -1,64 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reports from traces of runs (docs/REALTIME.md, "Trace format").
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
-#include <limits>
-#include <span>
 #include <string>
 
-#include "config/text_file.hpp"
 #include "config/unit_quaternion.hpp"
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/report_input.hpp"
-#include "tools/realtime/trace.hpp"
+#include "tools/palpate/trace_file.hpp"
 
 namespace palpate::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using realtime::TraceHeader;
 using realtime::TraceRecord;
-
-// Records are copied as they lie in the file.
-static_assert(std::endian::native == std::endian::little);
-
-struct Trace {
-  TraceHeader header;
-  fs::path scene;
-  std::vector<TraceRecord> records;  ///< at least one
-};
-
-[[noreturn]] void refuse(const std::string& what, const fs::path& file) {
-  throw Failure(kRefused, what, file.string(),
-                "give a trace that 'palpate run -o' wrote, or the folder of a sweep or a replay");
-}
-
-Trace read_trace(const fs::path& file) {
-  std::string bytes;
-  if (const std::error_code error = config::read_text(file, bytes)) {
-    refuse("cannot read the trace (" + error.message() + ")", file);
-  }
-  Trace trace;
-  TraceHeader& h = trace.header;
-  if (bytes.size() < sizeof h) refuse("not a trace", file);
-  std::memcpy(&h, bytes.data(), sizeof h);
-  if (h.magic != realtime::kTraceMagic) refuse("not a trace", file);
-  if (h.version != realtime::kTraceVersion || h.record_bytes != sizeof(TraceRecord)) {
-    refuse("a trace of another version", file);
-  }
-  const std::size_t room = bytes.size() - std::min<std::size_t>(bytes.size(), h.header_bytes);
-  if (h.header_bytes < sizeof h || h.scene_bytes > h.header_bytes - sizeof h ||
-      h.records != room / sizeof(TraceRecord) || room % sizeof(TraceRecord) != 0) {
-    refuse("a trace cut short", file);
-  }
-  if (h.records == 0) refuse("a trace without ticks", file);
-  trace.scene = bytes.substr(sizeof h, h.scene_bytes);
-  trace.records.resize(h.records);
-  std::memcpy(trace.records.data(), bytes.data() + h.header_bytes, room);
-  return trace;
-}
 
 Vec3d vec(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
@@ -84,6 +39,7 @@ ReportRun run_of(const Trace& trace) {
   ReportRun run;
   run.rate_Hz = trace.header.rate_Hz;
   run.dropped = trace.header.dropped;
+  run.records = trace.records;
   for (const TraceRecord& r : trace.records) {
     const auto [x, y, z] = r.sent_force_N;
     run.sent_force_max_N =

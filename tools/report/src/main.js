@@ -3,7 +3,7 @@
 import './style.css';
 import { readData } from './data.js';
 import { Playhead } from './playhead.js';
-import { showCertificate, showLatency, showProfiles } from './ticks.js';
+import { showCertificate, showLatency, showProfiles, showRun } from './ticks.js';
 import { showTrade } from './trade.js';
 import { showView } from './view.js';
 
@@ -25,9 +25,12 @@ document.getElementById('made').textContent = `${kinds[data.kind]}. Made by palp
 fillList('words', data.summary);
 fillList('notes', data.notes);
 
-const playhead = new Playhead(data.frames?.count ?? 1);
+// The frames of the 3D view; plots may show more of the ticks.
+data.shown = data.view?.frames ?? data.frames;
+const playhead = new Playhead(data.shown?.count ?? 1);
 if (data.settings.length > 0) showTrade(document.getElementById('trade'), data.settings);
 if (data.view) showView(data, playhead);
 if (data.lines.length > 0) showProfiles(data, playhead);
-if (data.latency) showLatency(data);
-showCertificate(data);
+if (data.run) showRun(data, playhead);
+if (data.latency) showLatency(data, playhead);
+showCertificate(data, playhead);

@@ -6,6 +6,57 @@ import { number } from './units.js';
 
 const kMarkOfHeight = 0.16;
 const rebuilds = [];
+/// Plots over the time of the recording: one zoom and one cursor for all of them.
+const linked = [];
+const kSync = uPlot.sync('time');
+const passed = (type) => type === 'mousemove' || type === 'mouseleave';
+
+/// All show the stretch of time that one of them was told to.
+function zoomAlike(source) {
+  const { min, max } = source.scales.x;
+  for (const { plot } of linked) {
+    if (plot === source || !plot || (plot.scales.x.min === min && plot.scales.x.max === max)) continue;
+    plot.setScale('x', { min, max });
+  }
+}
+
+/// A level that values stay below, with its name at the right end.
+function drawLevel(u, { y, name }) {
+  const { ctx, bbox } = u;
+  const top = u.valToPos(y, 'y', true);
+  if (!(top >= bbox.top && top <= bbox.top + bbox.height)) return;
+  ctx.save();
+  ctx.strokeStyle = ctx.fillStyle = style('--quiet');
+  ctx.lineWidth = devicePixelRatio;
+  ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
+  ctx.beginPath();
+  ctx.moveTo(bbox.left, top);
+  ctx.lineTo(bbox.left + bbox.width, top);
+  ctx.stroke();
+  ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+  ctx.textAlign = 'right';
+  ctx.fillText(name, bbox.left + bbox.width - 4, top - 4 * devicePixelRatio);
+  ctx.restore();
+}
+
+/// Moments: a tick at the lower edge for a missed deadline, a whole line with its name for a fault.
+function drawMarks(u, marks) {
+  const { ctx, bbox } = u;
+  ctx.save();
+  ctx.strokeStyle = ctx.fillStyle = style('--overlap');
+  ctx.lineWidth = devicePixelRatio;
+  ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+  for (const { t_s: t, fault } of marks) {
+    const left = u.valToPos(t, 'x', true);
+    if (!(left >= bbox.left && left <= bbox.left + bbox.width)) continue;
+    ctx.beginPath();
+    ctx.moveTo(left, bbox.top + bbox.height);
+    ctx.lineTo(left, fault ? bbox.top : bbox.top + bbox.height - 10 * devicePixelRatio);
+    ctx.stroke();
+    if (fault) ctx.fillText(fault, left + 3, bbox.top + 11 * devicePixelRatio);
+  }
+  ctx.restore();
+}
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const colourOf = (index) => style(`--series-${index % 8}`);
 
@@ -96,7 +147,7 @@ function drawLines(u, lines) {
 }
 
 /// In the upper margin of what they concern, and not across it.
-function drawMarks(u, marks) {
+function drawEdgeMarks(u, marks) {
   const { ctx, bbox } = u;
   ctx.save();
   ctx.lineWidth = 1.5 * devicePixelRatio;
@@ -115,10 +166,18 @@ function drawMarks(u, marks) {
 /// Adds a plot to `host`.
 /// series: [{name, values, x?, kind: 'line' | 'joined' | 'points' | 'steps', colour?, hollow?, size?, dash?, width?}]; with `x` of
 /// their own, or all over the common x.
-/// lines: [{y, name}], across the plot and always in sight; marks: () => [{x, colour}], at the upper edge.
+/// overTime: x is the time of the recording, and the plot is linked with the others over it.
+/// levels: [{y, name}], marks: [{t_s, fault}]: drawn over it.
+/// lines: [{y, name}], across the plot and always in sight; edgeMarks: () => [{x, colour}], at the upper edge.
 /// compact: no names of axes or values. span: () => [from, to] of x; absent: all of it.
 /// Returns {show(x)}: moves the line that marks the page's frame; {setTable([x, ...values])}: other data of the same series.
-export function addPlot(host, { title, x, series, xLabel, yLabel, logX, logY, height = 240, onClick, onPoint, lines = [], marks, compact, span }) {
+export function addPlot(
+  host,
+  {
+    title, x, series, xLabel, yLabel, logX, logY, height = 240, onClick, onPoint, overTime, levels = [], marks = [],
+    lines = [], edgeMarks, compact, span,
+  },
+) {
   const heading = document.createElement('h3');
   heading.textContent = title;
   const place = document.createElement('div');
@@ -132,6 +191,8 @@ export function addPlot(host, { title, x, series, xLabel, yLabel, logX, logY, he
   mark.hidden = true;
   let plot;
   let shown = null;
+  const link = { plot };
+  if (overTime) linked.push(link);
 
   const moveMark = () => {
     mark.hidden = shown === null;
@@ -147,6 +208,7 @@ export function addPlot(host, { title, x, series, xLabel, yLabel, logX, logY, he
   const xScale = () => (span ? { range: () => span() } : {});
   const build = () => {
     plot?.destroy();
+    plot = link.plot = undefined;
     plot = new uPlot(
       {
         width: Math.max(260, place.clientWidth),
@@ -157,16 +219,37 @@ export function addPlot(host, { title, x, series, xLabel, yLabel, logX, logY, he
           : [axis(xLabel, logX, 34), axis(yLabel, logY, 66)],
         legend: { show: !compact },
         series: [{ label: xLabel, value: (_, v) => number(v, 5) }, ...series.map(seriesOptions)],
-        cursor: compact ? { show: false } : { drag: { x: true, y: false }, points: { size: 7 } },
+        cursor: compact
+          ? { show: false }
+          : {
+              drag: { x: true, y: false },
+              points: { size: 7 },
+              ...(overTime ? { sync: { key: kSync.key, filters: { pub: passed, sub: passed } } } : {}),
+            },
         hooks: {
-          setScale: [() => plot && moveMark()],
+          setScale: [
+            (u, key) => {
+              if (overTime && key === 'x') [host.dataset.from, host.dataset.to] = [u.scales.x.min, u.scales.x.max];
+              if (!plot) return;
+              moveMark();
+              if (overTime && key === 'x') zoomAlike(u);
+            },
+          ],
           setCursor: [(u) => onPoint?.(u)],
-          draw: [(u) => drawLines(u, lines), (u) => drawMarks(u, marks?.() ?? [])],
+          draw: [
+            (u) => {
+              for (const level of levels) drawLevel(u, level);
+              drawMarks(u, marks);
+              drawLines(u, lines);
+              drawEdgeMarks(u, edgeMarks?.() ?? []);
+            },
+          ],
         },
       },
       table,
       place,
     );
+    link.plot = plot;
     plot.over.append(mark);
     plot.over.addEventListener('click', () => {
       if (onClick && plot.cursor.idx !== null && plot.select.width === 0) onClick(plot.cursor.idx);

@@ -16,7 +16,7 @@ export class Strip {
     const add = (host, title, yLabel, names, keys, more = {}) => {
       const series = names.map(([name, colour]) => ({ name, values: [], kind: 'line', colour }));
       const plot = addPlot(host, {
-        title, x: [], series, xLabel: 's', yLabel, height: 118, compact: true, span: () => this.#span(), marks: () => this.#marks(), ...more,
+        title, x: [], series, xLabel: 's', yLabel, height: 118, compact: true, span: () => this.#span(), edgeMarks: () => this.#marks(), ...more,
       });
       this.#plots.push({ plot, keys });
     };

@@ -5,26 +5,82 @@ import { addPlot } from './plot.js';
 
 const at = (id) => document.getElementById(id);
 
+/// A line keeps its colour from plot to plot.
 function lineSeries(lines, key) {
-  return lines.map((line) => ({ name: line.name, values: floats(line[key]), kind: 'line' }));
+  return lines.map((line, colour) => ({ name: line.name, values: floats(line[key]), kind: 'line', colour }));
+}
+
+/// What every plot over the time of the recording has.
+function overTime(data, playhead) {
+  return {
+    x: floats(data.frames.t_s),
+    xLabel: 'time (s)',
+    overTime: true,
+    onClick: (index) => playhead.set((index * data.frames.stride) / data.shown.stride),
+    marks: data.run?.marks ?? [],
+  };
+}
+
+function follow(data, playhead, plots) {
+  const times = floats(data.shown.t_s);
+  const show = (frame) => plots.forEach((plot) => plot.show(times[frame]));
+  playhead.onChange(show);
+  show(playhead.frame);
+}
+
+/// Of a run: what no tick may exceed.
+function timeLevels({ run }) {
+  if (!run) return [];
+  const levels = [{ y: run.period_us, name: 'period' }];
+  if (run.budget_us !== null) levels.push({ y: run.budget_us, name: 'budget' });
+  return levels;
 }
 
 export function showProfiles(data, playhead) {
-  const { count, stride } = data.frames;
   at('profiles').hidden = false;
-  const ticks = Array.from({ length: count }, (_, frame) => frame * stride);
-  const common = { x: ticks, xLabel: 'tick', onClick: (index) => playhead.set(index) };
-  const plots = [
-    addPlot(at('force'), { ...common, title: 'Force', yLabel: 'force (N)', series: lineSeries(data.lines, 'force_N') }),
-    addPlot(at('time'), { ...common, title: 'Query time', yLabel: 'time (µs)', logY: true, series: lineSeries(data.lines, 'time_us') }),
+  const common = overTime(data, playhead);
+  const force = lineSeries(data.lines, 'force_N');
+  if (data.run) {
+    force[0].name = 'computed';
+    force.push({ name: 'sent', values: floats(data.run.sent_N), kind: 'line' });
+  }
+  follow(data, playhead, [
+    addPlot(at('force'), { ...common, title: 'Force', yLabel: 'force (N)', series: force }),
+    addPlot(at('time'), {
+      ...common,
+      title: 'Query time',
+      yLabel: 'time (µs)',
+      logY: true,
+      series: lineSeries(data.lines, 'time_us'),
+      levels: timeLevels(data),
+    }),
     addPlot(at('front'), { ...common, title: 'Front', yLabel: 'nodes of the front', logY: true, series: lineSeries(data.lines, 'front') }),
-  ];
-  const follow = (frame) => plots.forEach((plot) => plot.show(ticks[frame]));
-  playhead.onChange(follow);
-  follow(playhead.frame);
+    addPlot(at('contacts'), { ...common, title: 'Contacts', yLabel: 'contacts', series: lineSeries(data.lines, 'contacts') }),
+  ]);
 }
 
-export function showLatency(data) {
+/// What only a run has: what was sent, and what came back.
+export function showRun(data, playhead) {
+  const { run } = data;
+  at('run').hidden = false;
+  const common = overTime(data, playhead);
+  const axes = (packed) => ['x', 'y', 'z'].map((name, i) => ({ name, values: floats(packed[i]), kind: 'line' }));
+  const one = (name, packed) => [{ name, values: floats(packed), kind: 'line' }];
+  follow(data, playhead, [
+    addPlot(at('sent'), { ...common, title: 'Force sent', yLabel: 'force (N)', series: axes(run.sent_xyz_N) }),
+    addPlot(at('torque'), {
+      ...common,
+      title: 'Torque',
+      yLabel: 'torque (N m)',
+      series: [...one('computed', run.torque_Nm), ...one('sent', run.sent_torque_Nm)],
+    }),
+    addPlot(at('position'), { ...common, title: 'Position of the tool', yLabel: 'moved by (mm)', series: axes(run.moved_xyz_mm) }),
+    addPlot(at('energy'), { ...common, title: 'Energy from the hand to the scene', yLabel: 'energy (mJ)', series: one('energy', run.energy_mJ) }),
+    addPlot(at('age'), { ...common, title: 'Age of readings', yLabel: 'age (µs)', logY: true, series: one('age', run.age_us) }),
+  ]);
+}
+
+export function showLatency(data, playhead) {
   at('latency').hidden = false;
   const { from_us: from, bins_per_octave: perOctave, sets } = data.latency;
   const x = Array.from(floats(from));
@@ -48,14 +104,16 @@ export function showLatency(data) {
     series[0].name = 'tick';
     series.push({ name: 'late wake-up', values: floats(data.late_us), kind: 'line' });
   }
-  addPlot(at('timeline'), {
-    title: 'When',
-    x: floats(data.frames.t_s),
-    xLabel: 'time of the recording (s)',
-    yLabel: 'duration (µs)',
-    logY: true,
-    series,
-  });
+  follow(data, playhead, [
+    addPlot(at('timeline'), {
+      ...overTime(data, playhead),
+      title: 'When',
+      yLabel: 'duration (µs)',
+      logY: true,
+      series,
+      levels: timeLevels(data),
+    }),
+  ]);
 }
 
 /// Points of bound against true error, in millimetres: of settings, or of the ticks of lines.
@@ -80,7 +138,7 @@ function equality(series) {
   return [{ name: 'bound = error', kind: 'joined', dash: [2, 4], colour: 6, x: ends, values: ends }];
 }
 
-export function showCertificate(data) {
+export function showCertificate(data, playhead) {
   const points = scatterSeries(data).filter((s) => s.x.some((v, i) => v > 0 && s.values[i] > 0));
   if (points.length === 0 && data.lines.length === 0) return;
   at('certificate').hidden = false;
@@ -103,16 +161,17 @@ export function showCertificate(data) {
     });
   }
   if (data.lines.length > 0) {
-    const { count, stride } = data.frames;
-    addPlot(at('bounds'), {
-      title: 'Bound of every tick',
-      x: Array.from({ length: count }, (_, frame) => frame * stride),
-      xLabel: 'tick',
-      yLabel: 'error bound (mm)',
-      logY: true,
-      series: data.lines
-        .filter((line) => !line.exact)
-        .map((line) => ({ name: line.name, kind: 'line', values: floats(line.bound_m).map((v) => 1e3 * v) })),
-    });
+    follow(data, playhead, [
+      addPlot(at('bounds'), {
+        ...overTime(data, playhead),
+        title: 'Bound of every tick',
+        yLabel: 'error bound (mm)',
+        logY: true,
+        series: data.lines
+          .map((line, colour) => ({ line, colour }))
+          .filter(({ line }) => !line.exact)
+          .map(({ line, colour }) => ({ name: line.name, kind: 'line', colour, values: floats(line.bound_m).map((v) => 1e3 * v) })),
+      }),
+    ]);
   }
 }

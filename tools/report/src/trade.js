@@ -32,38 +32,62 @@ function fronts(settings) {
   return out;
 }
 
+/// Title, what it sorts by, and how that is written.
 const columns = [
   ['Engine', (s) => s.engine],
   ['Setting', (s) => s.words],
-  ['Median', (s) => duration(s.median_us)],
-  ['p99', (s) => duration(s.p99_us)],
-  ['p99.9', (s) => duration(s.p999_us)],
-  ['Largest', (s) => duration(s.max_us)],
-  ['Times as fast', (s) => number(s.speedup)],
-  ['Front', (s) => number(s.front_mean)],
-  ['Queries', (s) => number(s.queries_mean)],
-  ['Cut short', (s) => percent(s.truncated)],
-  ['Error of force', (s) => percent(s.force_nrmse)],
-  ['Error of torque', (s) => percent(s.torque_nrmse)],
-  ['Noticeable', (s) => percent(s.noticeable)],
-  ['Error bound', (s) => millimetres(s.bound_m)],
-  ['True error', (s) => millimetres(s.error_m)],
+  ['Median', (s) => s.median_us, duration],
+  ['p99', (s) => s.p99_us, duration],
+  ['p99.9', (s) => s.p999_us, duration],
+  ['Largest', (s) => s.max_us, duration],
+  ['Times as fast', (s) => s.speedup, number],
+  ['Front', (s) => s.front_mean, number],
+  ['Queries', (s) => s.queries_mean, number],
+  ['Cut short', (s) => s.truncated, percent],
+  ['Error of force', (s) => s.force_nrmse, percent],
+  ['Error of torque', (s) => s.torque_nrmse, percent],
+  ['Noticeable', (s) => s.noticeable, percent],
+  ['Error bound', (s) => s.bound_m, millimetres],
+  ['True error', (s) => s.error_m, millimetres],
 ];
 
+/// Least first; what there is no figure for comes last, whichever way it is sorted.
+function order(value, down) {
+  return (a, b) => {
+    const [x, y] = [value(a), value(b)];
+    if (x === null || y === null) return (x === null) - (y === null);
+    const less = typeof x === 'string' ? x.localeCompare(y, 'en', { numeric: true }) : x - y;
+    return down ? -less : less;
+  };
+}
+
+/// A click on a title sorts by it, a second one the other way round.
 function fillTable(table, settings) {
   const head = table.createTHead().insertRow();
-  for (const [title] of columns) {
+  const body = table.createTBody();
+  const sort = (column, down) => {
+    [...head.cells].forEach((cell, i) => {
+      if (i === column) cell.setAttribute('aria-sort', down ? 'descending' : 'ascending');
+      else cell.removeAttribute('aria-sort');
+    });
+    body.replaceChildren();
+    for (const s of [...settings].sort(order(columns[column][1], down))) {
+      const row = body.insertRow();
+      row.className = s.pareto ? 'best' : '';
+      for (const [, value, text] of columns) row.insertCell().textContent = text ? text(value(s)) : value(s);
+    }
+  };
+  columns.forEach(([title], column) => {
     const cell = document.createElement('th');
     cell.scope = 'col';
-    cell.textContent = title;
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.textContent = title;
+    button.addEventListener('click', () => sort(column, cell.getAttribute('aria-sort') === 'ascending'));
+    cell.append(button);
     head.append(cell);
-  }
-  const body = table.createTBody();
-  for (const s of [...settings].sort((a, b) => a.median_us - b.median_us)) {
-    const row = body.insertRow();
-    row.className = s.pareto ? 'best' : '';
-    for (const [, text] of columns) row.insertCell().textContent = text(s);
-  }
+  });
+  sort(2, false);
 }
 
 export function showTrade(section, settings) {

@@ -46,7 +46,7 @@ function levelsOf(contacts, body) {
 }
 
 function describe(view, data, frame, contacts, found, stage) {
-  const tick = frame * data.frames.stride;
+  const tick = frame * data.shown.stride;
   const force = Math.hypot(...stage.forceAt(frame));
   const position = stage.positionOf(view.tool, frame);
   const least = contacts.reduce((d, c) => Math.min(d, c.distance), Infinity);
@@ -79,7 +79,7 @@ function addLegend(view, stage) {
   entry('var(--ink)', 'contact with a gap');
 }
 
-function addTransport(playhead) {
+function addTransport(playhead, times) {
   const slider = at('frame');
   slider.max = playhead.count - 1;
   slider.addEventListener('input', () => playhead.set(slider.valueAsNumber));
@@ -87,13 +87,33 @@ function addTransport(playhead) {
     slider.value = frame;
   });
   const button = at('play');
+  const last = times.length - 1;
   let timer = null;
+  let before = 0;
+  let time = 0;
+  /// Along the recording's own times, whatever the display's rate; from the end it starts over.
+  const step = (now) => {
+    time += (Number(at('speed').value) * (now - before)) / 1000;
+    before = now;
+    if (time > times[last]) time = times[0];
+    let frame = playhead.frame;
+    while (frame < last && times[frame + 1] <= time) ++frame;
+    while (frame > 0 && times[frame] > time) --frame;
+    if (frame !== playhead.frame) playhead.set(frame);
+    timer = requestAnimationFrame(step);
+  };
+  playhead.onChange((frame) => {
+    // Moved by hand: go on from there.
+    if (times[frame] > time || times[Math.min(frame + 1, last)] <= time) time = times[frame];
+  });
   button.addEventListener('click', () => {
     if (timer !== null) {
-      clearInterval(timer);
+      cancelAnimationFrame(timer);
       timer = null;
     } else {
-      timer = setInterval(() => playhead.set((playhead.frame + 1) % playhead.count), 40);
+      before = performance.now();
+      time = times[playhead.frame];
+      timer = requestAnimationFrame(step);
     }
     button.textContent = timer === null ? 'Play' : 'Pause';
     button.setAttribute('aria-pressed', String(timer !== null));
@@ -114,12 +134,12 @@ export function showView(data, playhead) {
   const contacts = new Contacts(view.contacts);
   let stage;
   try {
-    stage = new RecordedStage(at('stage'), view, floats(data.frames.t_s));
+    stage = new RecordedStage(at('stage'), view, floats(data.shown.t_s));
   } catch {
     at('stage').textContent = 'This browser does not show 3D (WebGL is off or missing).';
     return;
   }
-  addTransport(playhead);
+  addTransport(playhead, floats(data.shown.t_s));
   addBodyChoices(at('bodies'), view, stage);
   addLegend(view, stage);
   const show = (frame) => {
