@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: Apache-2.0
+# The host's program is stopped for 0.1 s, and killed: the device lets go by itself. The next run renders.
+. ./lib.sh
+device_up --log
+
+# strike NAME SIGNAL [SIGNAL]: sends the first one while a run renders, 0.1 s later the other
+strike() {
+  : >"$scratch/sim.log"
+  palpate run "$scene" --device "$device" --rate 1000 --seconds 1.5 --json --quiet >"$scratch/run" 2>&1 & local run=$!
+  if [ "$BUS" = real ]; then sleep 1; else until_true grep -q "active, force" "$scratch/sim.log"; fi
+  sleep 0.3
+  fact "$1_at" "$EPOCHREALTIME"
+  kill "-$2" $run
+  sleep 0.1
+  fact "$1_let_go" "$(sed -n 's/^\([0-9.]*\) .*no force$/\1/p' "$scratch/sim.log" | tail -n 1)"
+  [ -z "${3:-}" ] || kill "-$3" $run
+  wait $run
+  echo "JSON $1 $? $(tr -d '\n' <"$scratch/run")"
+  measure "$1_again" --device "$device" --rate 1000 --seconds 0.4
+}
+strike stopped STOP CONT
+strike killed KILL

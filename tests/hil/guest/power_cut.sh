@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+# What the slots hold after a cut of power, then flashing without end until the next one. LAST: only the former.
+. ./lib.sh
+for module in virtio_pci virtio_blk crc32c_generic ext4; do modprobe "$module"; done
+until_true test -b /dev/vda
+busybox mount -t ext4 /dev/vda /mnt || exit 1
+device_up --flash /mnt/flash --slot-kib 128 --rate 1000
+for slot in 0 1; do
+  rm -f "$scratch/back"
+  dfu-util -d 1209:0001 -a $slot -U "$scratch/back" >"$scratch/said" 2>&1
+  fact "slot_$slot" "$([ -s "$scratch/back" ] && sha256sum <"$scratch/back" | cut -d' ' -f1 || echo none)"
+done
+fact looked yes
+[ -z "${LAST:-}" ] || exit 0
+while true; do
+  for image in ellipsoid small; do
+    echo "FLASHING $image"
+    palpate flash "$image.palp" --device usb --quiet
+    echo "FLASHED $image $?"
+  done
+done

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+# The device goes while the loop renders, in several ways; each time it comes back, and the next run renders.
+. ./lib.sh
+
+# lose NAME COMMAND...: does it while a run renders
+lose() {
+  say "$1"
+  palpate run "$scene" --device "$device" --rate 1000 --seconds 1.2 --json --quiet >"$scratch/run" 2>"$scratch/run.err" & local run=$!
+  until_true grep -q "active, force" "$scratch/sim.log"
+  sleep 0.3
+  fact "$1_at" "$EPOCHREALTIME"
+  "${@:2}"
+  wait $run
+  echo "JSON $1 $? $(tr -d '\n' <"$scratch/run")"
+  sed "s/^/  /" "$scratch/run.err"
+  fact "$1_let_go" "$(sed -n 's/^\([0-9.]*\) .*no force$/\1/p' "$scratch/sim.log" | tail -n 1)"
+}
+# back NAME COMMAND...
+back() {
+  : >"$scratch/sim.log"
+  "${@:2}"
+  until_true is_there
+  raise_threads
+  measure "$1_again" --device "$device" --rate 1000 --seconds 0.4
+}
+own() { ls -d /sys/bus/usb/devices/*:1.0 | while read -r interface; do
+  [ "$(cat "$interface/bInterfaceSubClass")" != 50 ] || echo "${interface%:*}"
+done; }
+write() { echo "$2" >"$1"; }
+
+device_up --log
+if [ "$BUS" = vhci ]; then
+  lose detached unplug
+  back detached usbip attach -r 127.0.0.1 -b 1-1
+  lose deauthorised write "$(own)/authorized" 0
+  back deauthorised write "$(ls -d /sys/bus/usb/devices/*-1/authorized | head -n 1)" 1
+  lose unconfigured write "$(own)/bConfigurationValue" 0
+  back unconfigured write "$(ls -d /sys/bus/usb/devices/*-1/bConfigurationValue | head -n 1)" 1
+  lose killed kill -9 "$simulator"
+  back killed device_up --log
+else
+  # A gadget that lets go of its pull-up is gone for the host, as when the plug is pulled.
+  lose disconnected write /sys/class/udc/dummy_udc.0/soft_connect disconnect
+  back disconnected write /sys/class/udc/dummy_udc.0/soft_connect connect
+fi

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Cuts the power of a device in the middle of updates, and looks at what its slots hold at each next start.
+
+The guest runs in real time here: with sleep=off waiting for the disk would make virtual time leap. What it wrote through to the
+disk stays; what it had in memory is lost, as on a device.
+"""
+
+import hashlib
+import random
+import re
+import subprocess
+import time
+
+from judge import Log
+
+START_LIMIT_S = 120
+
+
+def text_of(log):
+    return log.read_text(errors="replace").replace("\r", "")
+
+
+def wait_for(process, log, pattern, count=1):
+    """Seconds until the log has it; None where it never does."""
+    started = time.monotonic()
+    while time.monotonic() - started < START_LIMIT_S and process.poll() is None:
+        if len(re.findall(pattern, text_of(log), re.M)) >= count:
+            return time.monotonic() - started
+        time.sleep(0.02)
+    return None
+
+
+def boot(command, log, cut_after):
+    """Runs until cut_after(process, log) returns, or to the end."""
+    with open(log, "wb") as out:
+        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT)
+        try:
+            if cut_after:
+                cut_after(process, log)
+            else:
+                process.wait(START_LIMIT_S)
+        except subprocess.TimeoutExpired:
+            pass
+        finally:
+            process.kill()
+            process.wait()
+    return text_of(log)
+
+
+def cut_power(cuts, folder, command_of):
+    """The texts of all starts, one more than cuts. @param command_of  QEMU's, of settings and more options"""
+    disk = folder / "power_cuts.disk"
+    disk.unlink(missing_ok=True)
+    with open(disk, "wb") as file:
+        file.truncate(32 << 20)
+    subprocess.run(["mkfs.ext4", "-q", "-F", disk], check=True)
+    drive = ["-drive", f"file={disk},format=raw,if=virtio,cache=writethrough"]
+    moments = random.Random(1)
+    flash_s = 1.0
+    texts = []
+
+    def cut(process, log):
+        nonlocal flash_s
+        if wait_for(process, log, "^FLASHED") is None:
+            return
+        flash_s = wait_for(process, log, "^FLASHED", 2) or flash_s
+        wait_for(process, log, "^FLASHING", 3)
+        time.sleep(moments.uniform(0, flash_s))
+
+    for start in range(cuts + 1):
+        last = start == cuts
+        settings = {"scenario": "power_cut.sh", "BUS": "vhci", **({"LAST": 1} if last else {})}
+        texts.append(boot(command_of(settings, drive), folder / f"power_cuts.{start}.log", None if last else cut))
+    disk.unlink()
+    return texts
+
+
+def judge_power_cuts(texts, verdict, data):
+    known = {hashlib.sha256((data / f"{name}.palp").read_bytes()).hexdigest(): name for name in ("ellipsoid", "small")}
+    known["none"] = None
+    in_the_middle = whole = 0
+    flashed = None
+    for start, text in enumerate(texts):
+        facts = Log(text).facts
+        if facts.get("looked") != "yes":
+            verdict.failures.append(f"start {start} did not come so far as to read its slots")
+            continue
+        slots = [known.get(facts[f"slot_{n}"], "something else") for n in (0, 1)]
+        if "something else" in slots:
+            verdict.failures.append(f"start {start}: a slot holds what was never written: {slots}")
+        if flashed and flashed not in slots:
+            verdict.failures.append(f"start {start}: {flashed} was in use before the cut and is gone: {slots}")
+        if start > 0:
+            in_the_middle += None in slots
+            whole += None not in slots
+        done = re.findall(r"^FLASHED (\S+) 0$", text, re.M)
+        flashed = done[-1] if done else flashed
+    verdict.tell(f"{len(texts) - 1} cuts: {in_the_middle} left the slot in writing undeclared, {whole} left both slots whole")
+    verdict.at_least("cuts amid an update", in_the_middle, 1)
