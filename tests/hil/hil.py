@@ -44,7 +44,7 @@ def perform(scenario, options):
     started = time.monotonic()
     verdict = Verdict()
     if options.device:
-        settings = {"BUS": "real", "DEVICE": options.device, "SCENE": str(options.data / "scene.toml"), "PROJECT": str(HERE.parents[1]),
+        settings = {"BUS": "real", "DEVICE": options.device, "CPU": options.cpu, "SCENE": str(options.data / "scene.toml"), "PROJECT": str(HERE.parents[1]),
                     "SCRATCH": str(options.logs), **scenario.real}
         env = {**os.environ, "PATH": f"{options.programs}:{os.environ['PATH']}", **{k: str(v) for k, v in settings.items()}}
         run_to_end(["bash", "-c", f"./{scenario.script}; echo GUEST ended $?"], log, env, HERE / "guest")
@@ -69,6 +69,7 @@ def main():
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--only", action="append", default=[], metavar="NAME")
     parser.add_argument("--device", metavar="usb:SERIAL")
+    parser.add_argument("--cpu", type=int, default="")
     for name in ("kernel", "initramfs", "programs", "data", "logs"):
         parser.add_argument(f"--{name}", type=pathlib.Path)
     parser.add_argument("--jobs", type=int, default=1)

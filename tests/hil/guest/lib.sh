@@ -23,7 +23,7 @@ status() {
   sed 's/^/  /' "$scratch/said"
 }
 # measure NAME OPTION...
-measure() { json "$1" palpate run "$scene" --json --quiet "${@:2}"; }
+measure() { json "$1" palpate run "$scene" --json --quiet ${CPU:+--cpu "$CPU"} "${@:2}"; }
 
 # until_true COMMAND...: two seconds at most
 until_true() {
