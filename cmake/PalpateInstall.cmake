@@ -45,6 +45,7 @@ if(PALPATE_HOST)
   install(TARGETS palpate palpate-sim)
   # As in the sources, so that tools/setup/host finds what it installs.
   install(PROGRAMS tools/setup/host DESTINATION ${share_dir}/tools/setup)
+  install(PROGRAMS tools/gadget DESTINATION ${share_dir}/tools)
   install(DIRECTORY config/udev config/host config/scenes DESTINATION ${share_dir}/config)
 endif()
 

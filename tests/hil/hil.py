@@ -64,12 +64,20 @@ def perform(scenario, options):
     return verdict, log
 
 
+def reason_to_skip(scenario, options):
+    if options.device and scenario.real is None:
+        return "not with a real device"
+    if options.device and scenario.asked_for and scenario.name not in options.only:
+        return f"it writes to the device: ask for it by --only {scenario.name}"
+    return None
+
+
 def main():
     parser = argparse.ArgumentParser(prog="tools/hil")
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--only", action="append", default=[], metavar="NAME")
     parser.add_argument("--device", metavar="usb:SERIAL")
-    parser.add_argument("--cpu", type=int, default="")
+    parser.add_argument("--cpu", default="", metavar="N")
     for name in ("kernel", "initramfs", "programs", "data", "logs"):
         parser.add_argument(f"--{name}", type=pathlib.Path)
     parser.add_argument("--jobs", type=int, default=1)
@@ -87,12 +95,12 @@ def main():
     options.logs.mkdir(parents=True, exist_ok=True)
     print(f"TAP version 13\n1..{len(chosen)}", flush=True)
     failed = 0
-    here = [s for s in chosen if not options.device or s.real is not None]
+    reasons = {s.name: reason for s in chosen if (reason := reason_to_skip(s, options))}
     with ThreadPoolExecutor(1 if options.device else options.jobs) as pool:
-        futures = {s.name: pool.submit(perform, s, options) for s in here}
+        futures = {s.name: pool.submit(perform, s, options) for s in chosen if s.name not in reasons}
         for number, scenario in enumerate(chosen, 1):
-            if scenario.name not in futures:
-                print(f"ok {number} - {scenario.name} # SKIP not with a real device", flush=True)
+            if scenario.name in reasons:
+                print(f"ok {number} - {scenario.name} # SKIP {reasons[scenario.name]}", flush=True)
                 continue
             verdict, log = futures[scenario.name].result()
             print(verdict.tap(number, scenario.name), flush=True)

@@ -48,7 +48,7 @@ class Verdict:
         self.failures = []
 
     def _note(self, label, value, unit, holds, wanted):
-        shown = "missing" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
+        shown = "missing" if value is None else f"{round(value, 1):g}" if isinstance(value, float) else str(value)
         figure = f"{label} {shown}{unit}"
         self.figures.append(figure)
         if value is None or not holds(value):

@@ -21,6 +21,7 @@ class Scenario:
     judge: Callable
     settings: dict = field(default_factory=dict)
     real: dict | None = None  # settings on a real device; None: not for one
+    asked_for: bool = False  # on a real device only by --only: it writes to the device
     cuts: int = 0  # of power; the guest then runs in real time, and has a disk
 
 
@@ -72,6 +73,7 @@ def judge_run_of(**bounds):
 def judge_mock(log, verdict, real):
     for name in ("at_1k", "at_4k"):
         judge_run(log, verdict, real, name)
+    verdict.at_most("cyclictest beside max", log.number("cyclictest_us"), WAKE_UP_US, " us")
 
 
 def judge_falcon(log, verdict, real):
@@ -156,7 +158,7 @@ SCENARIOS = [
     Scenario("rate_4k", "a device by dummy_hcd and FunctionFS, 4 kHz beside hogs", "run.sh", judge_run_of(age_us=400),
              {**FUNCTIONFS, "RATE": 4000, "DURATION": 1}, real={"RATE": 4000, "DURATION": 20}),
     Scenario("falcon", "a Falcon: firmware, homing, 1 kHz beside hogs", "falcon.sh", judge_falcon, VHCI),
-    Scenario("flash", "images by palpate flash and by dfu-util, beside the loop too", "flash.sh", judge_flash, VHCI, real={}),
+    Scenario("flash", "images by palpate flash and by dfu-util, beside the loop too", "flash.sh", judge_flash, VHCI, real={}, asked_for=True),
     Scenario("unplug", "the device goes in a run: detached, deauthorised, unconfigured, killed", "unplug.sh",
              judge_unplug("detached", "deauthorised", "unconfigured", "killed", unseen=["killed"]), VHCI),
     Scenario("unplug_functionfs", "the same by the gadget's pull-up", "unplug.sh", judge_unplug("disconnected"), FUNCTIONFS),
