@@ -148,7 +148,7 @@ VHCI, FUNCTIONFS = {"BUS": "vhci"}, {"BUS": "functionfs"}
 
 SCENARIOS = [
     Scenario("doctor", "the kernel, and what doctor says about it; cyclictest beside", "doctor.sh", judge_doctor, VHCI, real={}),
-    Scenario("mock", "the loop alone, 1 and 4 kHz beside hogs", "mock.sh", judge_mock),
+    Scenario("mock", "the loop alone, 1 and 4 kHz beside hogs", "mock.sh", judge_mock, {"DEVICE": "mock"}),
     Scenario("rate_1k", "a device by vhci_hcd, 1 kHz beside hogs", "run.sh", judge_run_of(age_us=250),
              {**VHCI, "RATE": 1000, "DURATION": 1}, real={"RATE": 1000, "DURATION": 20}),
     Scenario("rate_2k", "the same at 2 kHz", "run.sh", judge_run_of(age_us=250),
@@ -157,7 +157,7 @@ SCENARIOS = [
              judge_run_of(wake_up_us=200, age_p99_at_least_us=800), {**VHCI, "RATE": 1000, "DURATION": 1, "THREADS": "ordinary"}),
     Scenario("rate_4k", "a device by dummy_hcd and FunctionFS, 4 kHz beside hogs", "run.sh", judge_run_of(age_us=400),
              {**FUNCTIONFS, "RATE": 4000, "DURATION": 1}, real={"RATE": 4000, "DURATION": 20}),
-    Scenario("falcon", "a Falcon: firmware, homing, 1 kHz beside hogs", "falcon.sh", judge_falcon, VHCI),
+    Scenario("falcon", "a Falcon: firmware, homing, 1 kHz beside hogs", "falcon.sh", judge_falcon, {**VHCI, "DEVICE": "falcon"}),
     Scenario("flash", "images by palpate flash and by dfu-util, beside the loop too", "flash.sh", judge_flash, VHCI, real={}, asked_for=True),
     Scenario("unplug", "the device goes in a run: detached, deauthorised, unconfigured, killed", "unplug.sh",
              judge_unplug("detached", "deauthorised", "unconfigured", "killed", unseen=["killed"]), VHCI),

@@ -11,7 +11,8 @@ namespace palpate::sim {
 void Replugger::look() {
   const hal::simulator::Presence presence = device_.presence();
   if (server_.attached() && presence.times_left == times_left_) {
-    plugged_in_here_ = vhci_.has_device();
+    // Not again and again: that would take time from the device's periods.
+    if (!plugged_in_here_) plugged_in_here_ = vhci_.has_device();
   } else if (!server_.attached() && presence.on_bus) {
     // Not after somebody has detached it.
     if (plugged_in_here_ && presence.times_left != times_left_) plug_in();

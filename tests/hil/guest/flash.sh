@@ -17,7 +17,7 @@ slot=$(letter)
 read_back flash_back "$slot" ellipsoid.palp
 
 # While the loop renders the device is the loop's.
-json beside palpate run "$scene" --device "$device" --rate 1000 --seconds 1.5 --json --quiet >"$scratch/beside" & run=$!
+json beside "${render[@]}" --rate 1000 --seconds 1.5 >"$scratch/beside" & run=$!
 sleep 1
 status flash_beside palpate flash small.palp --device "$device" --quiet
 wait $run

@@ -6,7 +6,7 @@ device_up --log
 # strike NAME SIGNAL [SIGNAL]: sends the first one while a run renders, 0.1 s later the other
 strike() {
   : >"$scratch/sim.log"
-  palpate run "$scene" --device "$device" --rate 1000 --seconds 1.5 --json --quiet >"$scratch/run" 2>&1 & local run=$!
+  "${render[@]}" --rate 1000 --seconds 1.5 >"$scratch/run" 2>&1 & local run=$!
   if [ "$BUS" = real ]; then sleep 1; else until_true grep -q "active, force" "$scratch/sim.log"; fi
   sleep 0.3
   fact "$1_at" "$EPOCHREALTIME"
@@ -16,7 +16,7 @@ strike() {
   [ -z "${3:-}" ] || kill "-$3" $run
   wait $run
   echo "JSON $1 $? $(tr -d '\n' <"$scratch/run")"
-  measure "$1_again" --device "$device" --rate 1000 --seconds 0.4
+  measure "$1_again" --rate 1000 --seconds 0.4
 }
 strike stopped STOP CONT
 strike killed KILL

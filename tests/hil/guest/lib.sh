@@ -23,7 +23,8 @@ status() {
   sed 's/^/  /' "$scratch/said"
 }
 # measure NAME OPTION...
-measure() { json "$1" palpate run "$scene" --json --quiet ${CPU:+--cpu "$CPU"} "${@:2}"; }
+measure() { json "$1" "${render[@]}" "${@:2}"; }
+render=(palpate run "$scene" --device "$device" ${CPU:+--cpu "$CPU"} --json --quiet)
 
 # until_true COMMAND...: two seconds at most
 until_true() {
@@ -34,7 +35,7 @@ until_true() {
 
 hogs=()
 hogs_on() {
-  for _ in 1 2 3; do (while :; do :; done) & hogs+=($!); done
+  for _ in 1 2 $(seq "$(nproc)"); do (while :; do :; done) & hogs+=($!); done
   dd if=/dev/zero of=/dev/null bs=1M 2>/dev/null & hogs+=($!)
 }
 hogs_off() { kill "${hogs[@]}"; wait "${hogs[@]}" 2>/dev/null; hogs=(); }
@@ -47,11 +48,11 @@ is_there() { palpate devices --json | grep -q '"ready"'; }
 is_gone() { ! is_there; }
 
 simulator=
-# simulate OPTION...: above the loop, as hardware would be
+# simulate OPTION...: below the loop, which a device that is hardware does not hold up, and above everything else
 simulate() {
   case $BUS in
-    vhci) chrt -f 90 palpate-sim --scene "$scene" "$@" >"$scratch/sim.log" 2>&1 & ;;
-    functionfs) PALPATE_SIM=palpate-sim chrt -f 90 "$project/tools/gadget" --scene "$scene" "$@" >"$scratch/sim.log" 2>&1 & ;;
+    vhci) chrt -f 79 palpate-sim --scene "$scene" "$@" >"$scratch/sim.log" 2>&1 & ;;
+    functionfs) PALPATE_SIM=palpate-sim chrt -f 79 "$project/tools/gadget" --scene "$scene" "$@" >"$scratch/sim.log" 2>&1 & ;;
   esac
   simulator=$!
 }

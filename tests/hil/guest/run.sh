@@ -4,6 +4,6 @@
 device_up
 json devices palpate devices --json
 hogs_on
-measure run --device "$device" --rate "$RATE" --seconds "$DURATION"
+measure run --rate "$RATE" --seconds "$DURATION"
 hogs_off
 tail -n 3 "$scratch/sim.log"

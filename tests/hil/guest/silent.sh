@@ -2,7 +2,7 @@
 # The device stays on the bus but says nothing for 0.3 s.
 . ./lib.sh
 device_up --log
-measure silent --device "$device" --rate 1000 --seconds 1.2 >"$scratch/silent" & run=$!
+measure silent --rate 1000 --seconds 1.2 >"$scratch/silent" & run=$!
 until_true grep -q "active, force" "$scratch/sim.log"
 sleep 0.3
 kill -STOP "$simulator"
@@ -10,4 +10,4 @@ sleep 0.3
 kill -CONT "$simulator"
 wait $run
 cat "$scratch/silent"
-measure again --device "$device" --rate 1000 --seconds 0.4
+measure again --rate 1000 --seconds 0.4

@@ -19,7 +19,7 @@ fact power "$(cat /sys/bus/usb/devices/*-1/power/control | tail -n 1)"
 json member as 46 palpate devices --json
 json stranger as 1000 palpate devices --json
 chmod 1777 /tmp
-json without_limits as 46 palpate run "$scene" --device "$device" --rate 1000 --seconds 0.4 --json --quiet
+json without_limits as 46 "${render[@]}" --rate 1000 --seconds 0.4
 ulimit -r 95 -l unlimited
-json with_limits as 46 palpate run "$scene" --device "$device" --rate 1000 --seconds 0.8 --json --quiet
+json with_limits as 46 "${render[@]}" --rate 1000 --seconds 0.8
 json doctor as 46 palpate doctor --json

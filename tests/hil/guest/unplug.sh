@@ -5,7 +5,7 @@
 # lose NAME COMMAND...: does it while a run renders
 lose() {
   say "$1"
-  palpate run "$scene" --device "$device" --rate 1000 --seconds 1.2 --json --quiet >"$scratch/run" 2>"$scratch/run.err" & local run=$!
+  "${render[@]}" --rate 1000 --seconds 1.2 >"$scratch/run" 2>"$scratch/run.err" & local run=$!
   until_true grep -q "active, force" "$scratch/sim.log"
   sleep 0.3
   fact "$1_at" "$EPOCHREALTIME"
@@ -21,7 +21,7 @@ back() {
   "${@:2}"
   until_true is_there
   raise_threads
-  measure "$1_again" --device "$device" --rate 1000 --seconds 0.4
+  measure "$1_again" --rate 1000 --seconds 0.4
 }
 own() { ls -d /sys/bus/usb/devices/*:1.0 | while read -r interface; do
   [ "$(cat "$interface/bInterfaceSubClass")" != 50 ] || echo "${interface%:*}"
