@@ -50,9 +50,10 @@ is_gone() { ! is_there; }
 simulator=
 # simulate OPTION...: below the loop, which a device that is hardware does not hold up, and above everything else
 simulate() {
+  : >"$scratch/sim.log"
   case $BUS in
-    vhci) chrt -f 79 palpate-sim --scene "$scene" "$@" >"$scratch/sim.log" 2>&1 & ;;
-    functionfs) PALPATE_SIM=palpate-sim chrt -f 79 "$project/tools/gadget" --scene "$scene" "$@" >"$scratch/sim.log" 2>&1 & ;;
+    vhci) chrt -f 79 palpate-sim --scene "$scene" "$@" >>"$scratch/sim.log" 2>&1 & ;;
+    functionfs) PALPATE_SIM=palpate-sim chrt -f 79 "$project/tools/gadget" --scene "$scene" "$@" >>"$scratch/sim.log" 2>&1 & ;;
   esac
   simulator=$!
 }

@@ -5,6 +5,7 @@
 # lose NAME COMMAND...: does it while a run renders
 lose() {
   say "$1"
+  : >"$scratch/sim.log"
   "${render[@]}" --rate 1000 --seconds 1.2 >"$scratch/run" 2>"$scratch/run.err" & local run=$!
   until_true grep -q "active, force" "$scratch/sim.log"
   sleep 0.3
@@ -17,7 +18,6 @@ lose() {
 }
 # back NAME COMMAND...
 back() {
-  : >"$scratch/sim.log"
   "${@:2}"
   until_true is_there
   raise_threads
@@ -41,5 +41,8 @@ if [ "$BUS" = vhci ]; then
 else
   # A gadget that lets go of its pull-up is gone for the host, as when the plug is pulled.
   lose disconnected write /sys/class/udc/dummy_udc.0/soft_connect disconnect
-  back disconnected write /sys/class/udc/dummy_udc.0/soft_connect connect
+  # dummy_hcd does not come back by "connect": the gadget is made anew.
+  kill "$simulator"
+  wait "$simulator" 2>/dev/null
+  back disconnected device_up --log
 fi
