@@ -119,7 +119,7 @@ def judge_unplug(*ways, unseen=()):
 
 def judge_silent(log, verdict, real):
     verdict.equal("exit status", log.status("silent"), 4)
-    verdict.equal("faults", " ".join(log.get("silent", "faults") or []), "stale_state")
+    verdict.equal("first fault", log.get("silent", "fault_details", 0, "fault"), "stale_state")
     verdict.equal("the next run", log.get("again", "state"), "rendering")
 
 

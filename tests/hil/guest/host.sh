@@ -9,10 +9,10 @@ strike() {
   "${render[@]}" --rate 1000 --seconds 1.5 >"$scratch/run" 2>&1 & local run=$!
   if [ "$BUS" = real ]; then sleep 1; else until_true grep -q "active, force" "$scratch/sim.log"; fi
   sleep 0.3
-  fact "$1_at" "$EPOCHREALTIME"
+  mark "$1"
   kill "-$2" $run
   sleep 0.1
-  fact "$1_let_go" "$(sed -n 's/^\([0-9.]*\) .*no force$/\1/p' "$scratch/sim.log" | tail -n 1)"
+  let_go "$1"
   [ -z "${3:-}" ] || kill "-$3" $run
   wait $run
   echo "JSON $1 $? $(tr -d '\n' <"$scratch/run")"

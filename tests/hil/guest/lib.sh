@@ -33,6 +33,10 @@ until_true() {
   return 1
 }
 
+# mark NAME, let_go NAME: now, and when the simulated device first had no force after that
+mark() { marked=$EPOCHREALTIME; fact "$1_at" "$marked"; }
+let_go() { fact "$1_let_go" "$(awk -v at="$marked" '$1 > at && /no force/ { print $1; exit }' "$scratch/sim.log")"; }
+
 hogs=()
 hogs_on() {
   for _ in 1 2 $(seq "$(nproc)"); do (while :; do :; done) & hogs+=($!); done

@@ -9,12 +9,12 @@ lose() {
   "${render[@]}" --rate 1000 --seconds 1.2 >"$scratch/run" 2>"$scratch/run.err" & local run=$!
   until_true grep -q "active, force" "$scratch/sim.log"
   sleep 0.3
-  fact "$1_at" "$EPOCHREALTIME"
+  mark "$1"
   "${@:2}"
   wait $run
   echo "JSON $1 $? $(tr -d '\n' <"$scratch/run")"
   sed "s/^/  /" "$scratch/run.err"
-  fact "$1_let_go" "$(sed -n 's/^\([0-9.]*\) .*no force$/\1/p' "$scratch/sim.log" | tail -n 1)"
+  let_go "$1"
 }
 # back NAME COMMAND...
 back() {
