@@ -16,7 +16,7 @@ from scenarios import SCENARIOS
 HERE = pathlib.Path(__file__).resolve().parent
 # One instruction is one nanosecond, and sleep takes no time: what else this machine does has no influence.
 VIRTUAL_TIME = ["-icount", "shift=0,sleep=off"]
-LIMIT_S = 300
+LIMIT_S = 600
 
 
 def qemu(options, settings, more=()):

@@ -141,7 +141,7 @@ def judge_udev(log, verdict, real):
     verdict.equal("power/control", log.facts.get("power"), "on")
     verdict.silently("without limits: state", log.get("without_limits", "state"), "rendering")
     verdict.silently("without limits: notes", bool(log.get("without_limits", "notes")), True)
-    judge_run(log, verdict, real, "with_limits", age_us=250)
+    judge_run(log, verdict, real, "with_limits", age_us=1250)
 
 
 VHCI, FUNCTIONFS = {"BUS": "vhci"}, {"BUS": "functionfs"}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The host's program is stopped for 0.1 s, and killed: the device lets go by itself. The next run renders.
 . ./lib.sh
-device_up --log
+device_up --rate 1000 --log
 
 # strike NAME SIGNAL [SIGNAL]: sends the first one while a run renders, 0.1 s later the other
 strike() {

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The device stays on the bus but says nothing for 0.3 s.
 . ./lib.sh
-device_up --log
+device_up --rate 1000 --log
 measure silent --rate 1000 --seconds 1.2 >"$scratch/silent" & run=$!
 until_true grep -q "active, force" "$scratch/sim.log"
 sleep 0.3

@@ -2,10 +2,9 @@
 # An ordinary user: without the rule nothing, with it and the limits everything.
 . ./lib.sh
 /lib/systemd/systemd-udevd --daemon
-device_up
+device_up --rate 1000
 udevadm settle
 as() { setpriv --reuid 1000 --regid 1000 --groups "$1" env TMPDIR=/tmp "${@:2}"; }
-node() { stat -c '%a %g' /dev/bus/usb/*/002 2>/dev/null | head -n 1; }
 
 json before as 46 palpate devices --json
 bash "$project/tools/setup/host" | sed 's/^/  /'
@@ -14,7 +13,7 @@ sleep 0.3
 plug_in
 raise_threads
 udevadm settle
-fact node "$(node)"
+fact node "$(stat -c '%a %g' /dev/bus/usb/001/* | tail -n 1)"
 fact power "$(cat /sys/bus/usb/devices/*-1/power/control | tail -n 1)"
 json member as 46 palpate devices --json
 json stranger as 1000 palpate devices --json

@@ -28,7 +28,7 @@ own() { ls -d /sys/bus/usb/devices/*:1.0 | while read -r interface; do
 done; }
 write() { echo "$2" >"$1"; }
 
-device_up --log
+device_up --rate 1000 --log
 if [ "$BUS" = vhci ]; then
   lose detached unplug
   back detached usbip attach -r 127.0.0.1 -b 1-1
@@ -37,12 +37,12 @@ if [ "$BUS" = vhci ]; then
   lose unconfigured write "$(own)/bConfigurationValue" 0
   back unconfigured write "$(ls -d /sys/bus/usb/devices/*-1/bConfigurationValue | head -n 1)" 1
   lose killed kill -9 "$simulator"
-  back killed device_up --log
+  back killed device_up --rate 1000 --log
 else
   # A gadget that lets go of its pull-up is gone for the host, as when the plug is pulled.
   lose disconnected write /sys/class/udc/dummy_udc.0/soft_connect disconnect
   # dummy_hcd does not come back by "connect": the gadget is made anew.
   kill "$simulator"
   wait "$simulator" 2>/dev/null
-  back disconnected device_up --log
+  back disconnected device_up --rate 1000 --log
 fi
