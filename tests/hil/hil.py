@@ -97,7 +97,9 @@ def main():
     failed = 0
     reasons = {s.name: reason for s in chosen if (reason := reason_to_skip(s, options))}
     with ThreadPoolExecutor(1 if options.device else options.jobs) as pool:
-        futures = {s.name: pool.submit(perform, s, options) for s in chosen if s.name not in reasons}
+        # What takes longest begins first.
+        waiting = sorted((s for s in chosen if s.name not in reasons), key=lambda s: -s.cuts)
+        futures = {s.name: pool.submit(perform, s, options) for s in waiting}
         for number, scenario in enumerate(chosen, 1):
             if scenario.name in reasons:
                 print(f"ok {number} - {scenario.name} # SKIP {reasons[scenario.name]}", flush=True)

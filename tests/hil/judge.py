@@ -30,7 +30,7 @@ class Log:
         return self._json.get(name, (None, None))[0]
 
     def get(self, name, *keys):
-        """An entry of the JSON called `name`; names() says how to reach it."""
+        """An entry of the JSON called `name`, reached by keys and indices."""
         value = self._json.get(name, (None, None))[1]
         for key in keys:
             try:
@@ -55,7 +55,8 @@ class Verdict:
             self.failures.append(f"{figure}, wanted {wanted}{unit}")
 
     def at_most(self, label, value, bound, unit=""):
-        self._note(label, value, unit, lambda v: v <= bound, f"at most {bound}")
+        """Without a bound it is only shown, and must be there."""
+        self._note(label, value, unit, lambda v: bound is None or v <= bound, "a figure" if bound is None else f"at most {bound}")
 
     def at_least(self, label, value, bound, unit=""):
         self._note(label, value, unit, lambda v: v >= bound, f"at least {bound}")

@@ -14,6 +14,7 @@ import time
 from judge import Log
 
 START_LIMIT_S = 120
+IMAGES = ("ellipsoid", "small")
 
 
 def text_of(log):
@@ -56,27 +57,31 @@ def cut_power(cuts, folder, command_of):
     subprocess.run(["mkfs.ext4", "-q", "-F", disk], check=True)
     drive = ["-drive", f"file={disk},format=raw,if=virtio,cache=writethrough"]
     moments = random.Random(1)
-    flash_s = 1.0
+    update_s = None
     texts = []
 
     def cut(process, log):
-        nonlocal flash_s
-        if wait_for(process, log, "^FLASHED") is None:
-            return
-        flash_s = wait_for(process, log, "^FLASHED", 2) or flash_s
-        wait_for(process, log, "^FLASHING", 3)
-        time.sleep(moments.uniform(0, flash_s))
+        nonlocal update_s
+        # The first one is written whole, unless it is in use already; the second one is what is cut.
+        wait_for(process, log, "^FLASHING")
+        took = wait_for(process, log, "^FLASHED")
+        update_s = update_s or took or 1.0
+        wait_for(process, log, "^FLASHING", 2)
+        # The end of an update is waiting for the device's restart.
+        time.sleep(update_s * moments.uniform(0.1, 0.7))
 
     for start in range(cuts + 1):
         last = start == cuts
-        settings = {"scenario": "power_cut.sh", "BUS": "vhci", **({"LAST": 1} if last else {})}
+        # By turns each image, and each slot, is the one that is cut.
+        first, second = IMAGES if start % 2 == 0 else reversed(IMAGES)
+        settings = {"scenario": "power_cut.sh", "BUS": "vhci", "FIRST": first, "SECOND": second, **({"LAST": 1} if last else {})}
         texts.append(boot(command_of(settings, drive), folder / f"power_cuts.{start}.log", None if last else cut))
     disk.unlink()
     return texts
 
 
 def judge_power_cuts(texts, verdict, data):
-    known = {hashlib.sha256((data / f"{name}.palp").read_bytes()).hexdigest(): name for name in ("ellipsoid", "small")}
+    known = {hashlib.sha256((data / f"{name}.palp").read_bytes()).hexdigest(): name for name in IMAGES}
     known["none"] = None
     in_the_middle = whole = 0
     flashed = None

@@ -59,11 +59,11 @@ def judge_run(log, verdict, real, name="run", wake_up_us=WAKE_UP_US, age_us=None
     verdict.tell(f"{run('ticks')} ticks at {run('rate_hz'):g} Hz" if run("rate_hz") else "no run")
     verdict.equal("missed", run("missed"), 0)
     wake_up, age = us(run("latency_ns", "max")), us(run("state_age_ns", "max"))
-    verdict.at_most("wake-up max", wake_up, float("inf") if real else wake_up_us, " us")
+    verdict.at_most("wake-up max", wake_up, None if real else wake_up_us, " us")
     if age_p99_at_least_us:
         verdict.at_least("age p99", us(run("state_age_ns", "p99")), age_p99_at_least_us, " us")
     else:
-        verdict.at_most("age max", age, float("inf") if real or age_us is None else age_us, " us")
+        verdict.at_most("age max", age, None if real else age_us, " us")
 
 
 def judge_run_of(**bounds):
@@ -154,7 +154,7 @@ SCENARIOS = [
     Scenario("rate_2k", "the same at 2 kHz", "run.sh", judge_run_of(age_us=250),
              {**VHCI, "RATE": 2000, "DURATION": 1}, real={"RATE": 2000, "DURATION": 20}),
     Scenario("inversion", "the same at 1 kHz with the USB threads left at ordinary priority, which must show", "run.sh",
-             judge_run_of(wake_up_us=200, age_p99_at_least_us=800), {**VHCI, "RATE": 1000, "DURATION": 1, "THREADS": "ordinary"}),
+             judge_run_of(wake_up_us=None, age_p99_at_least_us=800), {**VHCI, "RATE": 1000, "DURATION": 1, "THREADS": "ordinary"}),
     Scenario("rate_4k", "a device by dummy_hcd and FunctionFS, 4 kHz beside hogs", "run.sh", judge_run_of(age_us=400),
              {**FUNCTIONFS, "RATE": 4000, "DURATION": 1}, real={"RATE": 4000, "DURATION": 20}),
     Scenario("falcon", "a Falcon: firmware, homing, 1 kHz beside hogs", "falcon.sh", judge_falcon, {**VHCI, "DEVICE": "falcon"}),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# What the slots hold after a cut of power, then flashing without end until the next one. LAST: only the former.
+# What the slots hold after a cut of power, then updates without end, FIRST before SECOND, until the next one. LAST: only the former.
 . ./lib.sh
 for module in virtio_pci virtio_blk crc32c_generic ext4; do modprobe "$module"; done
 until_true test -b /dev/vda
@@ -13,9 +13,9 @@ done
 fact looked yes
 [ -z "${LAST:-}" ] || exit 0
 while true; do
-  for image in ellipsoid small; do
+  for image in "$FIRST" "$SECOND"; do
     echo "FLASHING $image"
-    palpate flash "$image.palp" --device usb --quiet
+    palpate flash "$image.palp" --device usb --verify --quiet
     echo "FLASHED $image $?"
   done
 done
