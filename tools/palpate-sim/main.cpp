@@ -47,6 +47,7 @@ struct Options {
   fs::path functionfs;
   bool log = false;
   std::uint32_t slot_KiB = 512;
+  std::uint32_t erase_ms = 0;
   std::uint32_t rate_Hz = 4000;
 };
 
@@ -82,6 +83,7 @@ Simulated make(const Options& options) {
     open.layout.image_units = options.slot_KiB * kBytesPerKiB / open.layout.erase_bytes;
     out.flash = std::make_unique<hal::flash::FileFlash>(options.flash, open.layout);
     open.flash = out.flash.get();
+    open.flash_times.erase_ms = options.erase_ms;
     if (!options.public_key.empty()) open.key = cli::read_public_pem(options.public_key);
   }
   out.device = std::make_unique<hal::simulator::OpenDevice>(std::move(open));
@@ -160,6 +162,10 @@ int run(int argc, char** argv) {
                  "usb: it takes only images signed for this key, a PEM file");
   app.add_option("--slot-kib", options.slot_KiB, "usb: size of a slot for images")
       ->check(CLI::Range(4u, 1u << 20))
+      ->capture_default_str();
+  app.add_option("--erase-ms", options.erase_ms,
+                 "usb: what it takes to erase a unit of its flash, 4 KiB; 45 for a NOR flash")
+      ->check(CLI::Range(0u, 10000u))
       ->capture_default_str();
   app.add_option("--rate", options.rate_Hz, "usb: readings a second")
       ->check(CLI::Range(1u, 20000u))

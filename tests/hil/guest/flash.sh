@@ -2,7 +2,7 @@
 # Images go to the device by palpate and by dfu-util, and come back the same. PRODUCT: vendor and product ID; DFU files are for them.
 . ./lib.sh
 product=${PRODUCT:-1209:0001}
-device_up --flash "$scratch/flash" --slot-kib 512 --rate 1000
+device_up --flash "$scratch/flash" --slot-kib 512 --erase-ms 45 --rate 1000
 
 # read_back NAME SLOT IMAGE
 read_back() {
