@@ -4,13 +4,13 @@
 import argparse
 import os
 import pathlib
-import subprocess
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 
 from judge import Log, Verdict
 from power_cuts import cut_power
+from processes import kill_all_when_stopped, running, wait_for_end
 from scenarios import SCENARIOS
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -26,40 +26,42 @@ def qemu(options, settings, more=()):
             "-kernel", str(options.kernel), "-initrd", str(options.initramfs), "-append", f"console=ttyS0 quiet panic=-1 {words}"]
 
 
-def run_to_end(command, log, env=None, cwd=None):
-    """Its output is in the log; none of its processes outlives this."""
-    with open(log, "wb") as out:
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT, env=env, cwd=cwd)
-        try:
-            process.wait(LIMIT_S)
-        except subprocess.TimeoutExpired:
-            out.write(f"\nHIL: stopped after {LIMIT_S} s\n".encode())
-        finally:
-            process.kill()
-            process.wait()
+def on_this_machine(scenario, options):
+    settings = {"BUS": "real", "DEVICE": options.device, "CPU": options.cpu, "PROJECT": HERE.parents[1], "SCRATCH": options.logs, **scenario.real}
+    return {
+        "command": ["bash", "-c", f"bash ./{scenario.script}; echo GUEST ended $?"],
+        "env": {**os.environ, "PATH": f"{options.programs}:{os.environ['PATH']}", **{name: str(value) for name, value in settings.items()}},
+        "cwd": options.data,
+    }
+
+
+def in_guest(scenario, options):
+    return {"command": qemu(options, {"scenario": scenario.script, **scenario.settings}, VIRTUAL_TIME)}
+
+
+def perform_once(scenario, options, verdict):
+    log = options.logs / f"{scenario.name}.log"
+    with running(log=log, **(on_this_machine if options.device else in_guest)(scenario, options)) as process:
+        wait_for_end(process, LIMIT_S)
+    result = Log(log.read_text(errors="replace"))
+    if not result.ended:
+        verdict.failures.append(f"it did not come to its end within {LIMIT_S} s")
+    verdict.failures += [f"the kernel complained: {complaint}" for complaint in result.complaints]
+    scenario.judge(result, verdict, bool(options.device))
+    return log
+
+
+def perform_with_cuts(scenario, options, verdict):
+    texts = cut_power(scenario.cuts, options.logs, lambda settings, more: qemu(options, settings, more))
+    scenario.judge(texts, verdict, options.data)
+    return options.logs / "power_cuts.*.log"
 
 
 def perform(scenario, options):
-    log = options.logs / f"{scenario.name}.log"
+    """What is to be said about it, and where its log is."""
     started = time.monotonic()
     verdict = Verdict()
-    if options.device:
-        settings = {"BUS": "real", "DEVICE": options.device, "CPU": options.cpu, "SCENE": str(options.data / "scene.toml"), "PROJECT": str(HERE.parents[1]),
-                    "SCRATCH": str(options.logs), **scenario.real}
-        env = {**os.environ, "PATH": f"{options.programs}:{os.environ['PATH']}", **{k: str(v) for k, v in settings.items()}}
-        run_to_end(["bash", "-c", f"./{scenario.script}; echo GUEST ended $?"], log, env, HERE / "guest")
-    elif scenario.cuts:
-        texts = cut_power(scenario.cuts, options.logs, lambda settings, more: qemu(options, settings, more))
-        scenario.judge(texts, verdict, options.data)
-        verdict.tell(f"{time.monotonic() - started:.0f} s")
-        return verdict, options.logs / "power_cuts.*.log"
-    else:
-        run_to_end(qemu(options, {"scenario": scenario.script, **scenario.settings}, VIRTUAL_TIME), log)
-    result = Log(log.read_text(errors="replace"))
-    if not result.ended:
-        verdict.failures.append("it did not come to its end")
-    verdict.failures += [f"the kernel complained: {complaint}" for complaint in result.complaints]
-    scenario.judge(result, verdict, bool(options.device))
+    log = (perform_with_cuts if scenario.cuts else perform_once)(scenario, options, verdict)
     verdict.tell(f"{time.monotonic() - started:.0f} s")
     return verdict, log
 
@@ -79,7 +81,7 @@ def main():
     parser.add_argument("--device", metavar="usb:SERIAL")
     parser.add_argument("--cpu", default="", metavar="N")
     for name in ("kernel", "initramfs", "programs", "data", "logs"):
-        parser.add_argument(f"--{name}", type=pathlib.Path)
+        parser.add_argument(f"--{name}", type=lambda path: pathlib.Path(path).resolve())
     parser.add_argument("--jobs", type=int, default=1)
     options = parser.parse_args()
 
@@ -92,6 +94,7 @@ def main():
             print(f"{scenario.name:18} {scenario.what}{'' if scenario.real is None else ' (also --device)'}")
         return 0
 
+    kill_all_when_stopped()
     options.logs.mkdir(parents=True, exist_ok=True)
     print(f"TAP version 13\n1..{len(chosen)}", flush=True)
     failed = 0

@@ -12,6 +12,7 @@ import subprocess
 import time
 
 from judge import Log
+from processes import running, wait_for_end
 
 START_LIMIT_S = 120
 # Erasing for the smaller image takes 0.7 s: 12 units of 60 ms.
@@ -32,18 +33,11 @@ def wait_for(process, log, pattern):
 
 def boot(command, log, cut_after):
     """Runs until cut_after(process, log) returns, or to the end."""
-    with open(log, "wb") as out:
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT)
-        try:
-            if cut_after:
-                cut_after(process, log)
-            else:
-                process.wait(START_LIMIT_S)
-        except subprocess.TimeoutExpired:
-            pass
-        finally:
-            process.kill()
-            process.wait()
+    with running(command, log) as process:
+        if cut_after:
+            cut_after(process, log)
+        else:
+            wait_for_end(process, START_LIMIT_S)
     return text_of(log)
 
 

@@ -6,7 +6,7 @@
 project=${PROJECT:-/project}
 scratch=${SCRATCH:-/tmp}
 device=${DEVICE:-usb}
-scene=${SCENE:-scene.toml}
+scene=scene.toml
 
 say() { echo "== $* ($(cut -d' ' -f1 /proc/uptime) s)"; }
 fact() { echo "FACT $1 ${*:2}"; }
