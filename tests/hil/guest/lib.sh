@@ -49,7 +49,6 @@ sudo() { "$@"; }
 raise_threads() { eval "$(palpate doctor | sed -n '/^mend  usb_threads/,/mend:/s/.*mend: *//p')"; }
 
 is_there() { palpate devices --json | grep -q '"ready"'; }
-is_gone() { ! is_there; }
 
 simulator=
 # simulate OPTION...: below the loop, which a device that is hardware does not hold up, and above everything else
