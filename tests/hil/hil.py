@@ -4,6 +4,7 @@
 import argparse
 import os
 import pathlib
+import re
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -66,11 +67,17 @@ def perform(scenario, options):
     return verdict, log
 
 
+def version_of(kernel):
+    return tuple(int(number) for number in re.findall(r"\d+", kernel.name)[:2])
+
+
 def reason_to_skip(scenario, options):
     if options.device and scenario.real is None:
         return "not with a real device"
     if options.device and scenario.asked_for and scenario.name not in options.only:
         return f"it writes to the device: ask for it by --only {scenario.name}"
+    if not options.device and scenario.since > version_of(options.kernel):
+        return f"dummy_hcd has no microframes before Linux {'.'.join(map(str, scenario.since))}"
     return None
 
 

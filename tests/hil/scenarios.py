@@ -22,6 +22,7 @@ class Scenario:
     settings: dict = field(default_factory=dict)
     real: dict | None = None  # settings on a real device; None: not for one
     asked_for: bool = False  # on a real device only by --only: it writes to the device
+    since: tuple = (0, 0)  # Linux in the guest
     cuts: int = 0  # of power; the guest then runs in real time, and has a disk
 
 
@@ -156,7 +157,7 @@ SCENARIOS = [
     Scenario("inversion", "the same at 1 kHz with the USB threads left at ordinary priority, which must show", "run.sh",
              judge_run_of(wake_up_us=None, age_p99_at_least_us=800), {**VHCI, "RATE": 1000, "DURATION": 1, "THREADS": "ordinary"}),
     Scenario("rate_4k", "a device by dummy_hcd and FunctionFS, 4 kHz beside hogs", "run.sh", judge_run_of(age_us=400),
-             {**FUNCTIONFS, "RATE": 4000, "DURATION": 1}, real={"RATE": 4000, "DURATION": 20}),
+             {**FUNCTIONFS, "RATE": 4000, "DURATION": 1}, real={"RATE": 4000, "DURATION": 20}, since=(6, 12)),
     Scenario("falcon", "a Falcon: firmware, homing, 1 kHz beside hogs", "falcon.sh", judge_falcon, {**VHCI, "DEVICE": "falcon"}),
     Scenario("flash", "images by palpate flash and by dfu-util, beside the loop too", "flash.sh", judge_flash, VHCI, real={}, asked_for=True),
     Scenario("unplug", "the device goes in a run: detached, deauthorised, unconfigured, killed", "unplug.sh",
