@@ -47,6 +47,7 @@ if(PALPATE_HOST)
   install(TARGETS palpate palpate-sim RUNTIME COMPONENT tools)
   # As in the sources, so that tools/setup/host finds what it installs.
   install(PROGRAMS tools/setup/host DESTINATION ${share_dir}/tools/setup COMPONENT tools)
+  install(PROGRAMS tools/gadget DESTINATION ${share_dir}/tools COMPONENT tools)
   install(DIRECTORY config/udev config/host config/scenes DESTINATION ${share_dir}/config COMPONENT tools)
 endif()
 

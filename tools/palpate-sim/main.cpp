@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// palpate-sim: a simulated haptic device on TCP, by USB/IP. A machine with Linux's vhci_hcd
-// attaches it and has a USB device like any other.
-#include <sys/socket.h>
-#include <unistd.h>
-
+// palpate-sim: a simulated haptic device. On TCP, by USB/IP: a machine with Linux's vhci_hcd
+// attaches it and has a USB device like any other. Or on the USB of a machine that has a device
+// controller, by FunctionFS.
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
@@ -16,10 +14,12 @@
 
 #include "config/scene.hpp"
 #include "hal/flash/file_flash.hpp"
+#include "hal/functionfs/function_fs.hpp"
 #include "hal/simulator/falcon_device.hpp"
 #include "hal/simulator/open_device.hpp"
 #include "hal/usbip/server.hpp"
-#include "hal/usbip/vhci.hpp"
+#include "tools/palpate-sim/device_log.hpp"
+#include "tools/palpate-sim/replugger.hpp"
 #include "tools/palpate/error_line.hpp"
 #include "tools/palpate/key_file.hpp"
 #include "tools/realtime/scene_hand.hpp"
@@ -44,7 +44,10 @@ struct Options {
   fs::path scene;
   fs::path flash;
   fs::path public_key;
+  fs::path functionfs;
+  bool log = false;
   std::uint32_t slot_KiB = 512;
+  std::uint32_t erase_ms = 0;
   std::uint32_t rate_Hz = 4000;
 };
 
@@ -80,56 +83,34 @@ Simulated make(const Options& options) {
     open.layout.image_units = options.slot_KiB * kBytesPerKiB / open.layout.erase_bytes;
     out.flash = std::make_unique<hal::flash::FileFlash>(options.flash, open.layout);
     open.flash = out.flash.get();
+    open.flash_times.erase_ms = options.erase_ms;
     if (!options.public_key.empty()) open.key = cli::read_public_pem(options.public_key);
   }
   out.device = std::make_unique<hal::simulator::OpenDevice>(std::move(open));
   return out;
 }
 
-/// Where this machine's kernel had the device, it gets it again after the device's restart: nobody
-/// else would notice that it is back.
-class Replugger {
+/// What happens to the device, on stdout.
+class Watch {
  public:
-  Replugger(hal::usbip::Server& server, const hal::simulator::SimulatedDevice& device)
-      : server_(server), device_(device) {}
-
-  /// Called now and then.
-  void look() {
-    const hal::simulator::Presence presence = device_.presence();
-    if (server_.attached() && presence.times_left == times_left_) {
-      plugged_in_here_ = vhci_.has_device();
-    } else if (!server_.attached() && presence.on_bus) {
-      // Not after somebody has detached it.
-      if (plugged_in_here_ && presence.times_left != times_left_) plug_in();
-      plugged_in_here_ = false;
-      times_left_ = presence.times_left;
-    }
+  Watch(const Simulated& simulated, bool logged)
+      : log_(logged ? dynamic_cast<const hal::simulator::OpenDevice*>(simulated.device.get())
+                    : nullptr) {}
+  void look(bool attached) {
+    log_.look();
+    if (attached == attached_) return;
+    attached_ = attached;
+    std::printf(attached ? "attached\n" : "detached\n");
+    std::fflush(stdout);
   }
 
  private:
-  void plug_in() {
-    int ends[2];
-    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return;
-    if (vhci_.attach(ends[1], device_.descriptors().speed)) {
-      server_.adopt_owner(ends[0]);
-    } else {
-      ::close(ends[0]);
-      std::printf("the device is back; attach it again\n");
-      std::fflush(stdout);
-    }
-    ::close(ends[1]);
-  }
-
-  hal::usbip::Server& server_;
-  const hal::simulator::SimulatedDevice& device_;
-  hal::usbip::Vhci vhci_;
-  bool plugged_in_here_ = false;
-  std::uint32_t times_left_ = 0;  ///< by the device, when it was looked at last
+  DeviceLog log_;
+  bool attached_ = false;
 };
 
-int serve(const Options& options) {
+int serve_usbip(const Options& options, const Simulated& simulated) {
   hal::MonotonicClock clock;
-  const Simulated simulated = make(options);
   hal::usbip::Server server(*simulated.device, clock, options.address, options.port);
   std::printf(
       "A simulated device, %s:%s, on %s:%u. Where the kernel has vhci_hcd:\n"
@@ -137,26 +118,32 @@ int serve(const Options& options) {
       options.kind.c_str(), options.serial.c_str(), options.address.c_str(), server.port(),
       server.port(), options.address.c_str(), std::string(hal::usbip::kBusId).c_str());
   std::fflush(stdout);
-  bool attached = false;
   Replugger replugger(server, *simulated.device);
+  Watch watch(simulated, options.log);
   std::uint64_t look_ns = 0;
   while (!g_stop) {
     server.step(clock.now_ns() + kLookEvery_ns);
-    if (clock.now_ns() >= look_ns) {
-      replugger.look();
-      look_ns = clock.now_ns() + kLookEvery_ns;
-    }
-    if (attached == server.attached()) continue;
-    attached = server.attached();
-    std::printf(attached ? "attached\n" : "detached\n");
-    std::fflush(stdout);
+    watch.look(server.attached());
+    if (clock.now_ns() < look_ns) continue;
+    replugger.look();
+    look_ns = clock.now_ns() + kLookEvery_ns;
   }
+  return kDone;
+}
+
+int serve_functionfs(const Options& options, const Simulated& simulated) {
+  hal::MonotonicClock clock;
+  hal::functionfs::FunctionFs front(*simulated.device, clock, options.functionfs);
+  std::printf("A simulated device in %s: the gadget can be bound.\n", options.functionfs.c_str());
+  std::fflush(stdout);
+  Watch watch(simulated, options.log);
+  front.run(g_stop, [&] { watch.look(front.attached()); });
   return kDone;
 }
 
 int run(int argc, char** argv) {
   Options options;
-  CLI::App app("A simulated haptic device on TCP, by USB/IP");
+  CLI::App app("A simulated haptic device on TCP, by USB/IP, or on this machine's own USB");
   app.name("palpate-sim");
   app.set_version_flag("--version", "palpate-sim " PALPATE_VERSION);
   app.add_option("--device", options.kind, "what it is: usb (the open protocol) or falcon")
@@ -176,9 +163,20 @@ int run(int argc, char** argv) {
   app.add_option("--slot-kib", options.slot_KiB, "usb: size of a slot for images")
       ->check(CLI::Range(4u, 1u << 20))
       ->capture_default_str();
+  app.add_option("--erase-ms", options.erase_ms,
+                 "usb: what it takes to erase a unit of its flash, 4 KiB; 45 for a NOR flash")
+      ->check(CLI::Range(0u, 10000u))
+      ->capture_default_str();
   app.add_option("--rate", options.rate_Hz, "usb: readings a second")
       ->check(CLI::Range(1u, 20000u))
       ->capture_default_str();
+  app.add_option(
+      "--functionfs", options.functionfs,
+      "usb: instead of TCP, the folder where FunctionFS is mounted; tools/gadget does the "
+      "rest");
+  app.add_flag("--log", options.log,
+               "usb: a line with the time of day whenever the device's mode changes, or whether it "
+               "renders a force");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {
@@ -187,7 +185,15 @@ int run(int argc, char** argv) {
     return error(std::string(e.what()) + ": palpate-sim: see 'palpate-sim --help'", kUsage);
   }
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { g_stop = true; });
-  return serve(options);
+  const bool in_functionfs = !options.functionfs.empty();
+  if (in_functionfs && (options.kind != "usb" || !options.flash.empty())) {
+    return error(
+        "--functionfs: not with a Falcon or --flash: FunctionFS gives one interface of the open "
+        "protocol: leave them out",
+        kUsage);
+  }
+  const Simulated simulated = make(options);
+  return in_functionfs ? serve_functionfs(options, simulated) : serve_usbip(options, simulated);
 }
 
 int run_and_report(int argc, char** argv) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Debian 12 packages that the project needs, and how they get there. Sourced by tools/demo and tools/test.
+# Debian 12 packages that the project needs, and how they get there. Sourced by tools/demo, tools/test and tools/hil.
 
 packages_build="g++ cmake ninja-build git ca-certificates libcgal-dev libboost-dev libeigen3-dev libtbb-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libusb-1.0-0-dev libsodium-dev libpng-dev"
 # For the page of reports, which is built where node is found.
@@ -9,6 +9,9 @@ packages_test="$packages_page libgtest-dev clang libclang-rt-14-dev llvm clang-f
 packages_browser="chromium dpkg-dev mmdebstrap"
 # Only for tools/bench, which is built where these are found.
 packages_bench="libbenchmark-dev libfcl-dev libbullet-dev"
+
+# For tools/hil beside the build's: a kernel in QEMU, and what is packed into its initramfs.
+packages_hil="qemu-system-x86 busybox-static rt-tests cpio kmod udev usbip dfu-util xz-utils e2fsprogs util-linux python3"
 
 # need_packages NAME...: installs what is missing; without root by sudo; without either says which are missing and gives up.
 need_packages() {

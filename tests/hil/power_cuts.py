@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Cuts the power of a device in the middle of updates, and looks at what its slots hold at each next start.
+
+The guest runs in real time here: with sleep=off waiting for the disk would make virtual time leap. What it wrote through to the
+disk stays; what it had in memory is lost, as on a device.
+"""
+
+import hashlib
+import random
+import re
+import subprocess
+import time
+
+from judge import Log
+from processes import running, wait_for_end
+
+START_LIMIT_S = 120
+# Erasing for the smaller image takes 0.7 s: 12 units of 60 ms.
+WRITING_S = 0.6
+IMAGES = ("ellipsoid", "small")
+
+
+def text_of(log):
+    return log.read_text(errors="replace").replace("\r", "")
+
+
+def wait_for(process, log, pattern):
+    """Until the log has it, or the process has ended, or it takes too long."""
+    give_up = time.monotonic() + START_LIMIT_S
+    while time.monotonic() < give_up and process.poll() is None and not re.search(pattern, text_of(log), re.M):
+        time.sleep(0.02)
+
+
+def boot(command, log, cut_after):
+    """Runs until cut_after(process, log) returns, or to the end."""
+    with running(command, log) as process:
+        if cut_after:
+            cut_after(process, log)
+        else:
+            wait_for_end(process, START_LIMIT_S)
+    return text_of(log)
+
+
+def cut_power(cuts, folder, command_of):
+    """The texts of all starts, one more than cuts. @param command_of  QEMU's, of settings and more options"""
+    disk = folder / "power_cuts.disk"
+    disk.unlink(missing_ok=True)
+    with open(disk, "wb") as file:
+        file.truncate(32 << 20)
+    subprocess.run(["mkfs.ext4", "-q", "-F", disk], check=True)
+    drive = ["-drive", f"file={disk},format=raw,if=virtio,cache=writethrough"]
+    moments = random.Random(1)
+    texts = []
+
+    def cut(process, log):
+        wait_for(process, log, "^WRITING")
+        time.sleep(moments.uniform(0, WRITING_S))
+
+    for start in range(cuts + 1):
+        last = start == cuts
+        # The image that was cut goes first, so that both slots are whole again before the next cut, which is the other one's.
+        first, second = IMAGES if start == 0 or start % 2 == 1 else reversed(IMAGES)
+        settings = {"scenario": "power_cut.sh", "BUS": "vhci", "FIRST": first, "SECOND": second, **({"LAST": 1} if last else {})}
+        texts.append(boot(command_of(settings, drive), folder / f"power_cuts.{start}.log", None if last else cut))
+    disk.unlink()
+    return texts
+
+
+def judge_power_cuts(texts, verdict, data):
+    known = {hashlib.sha256((data / f"{name}.palp").read_bytes()).hexdigest(): name for name in IMAGES}
+    known["none"] = None
+    in_the_middle = 0
+    flashed = None
+    for start, text in enumerate(texts):
+        facts = Log(text).facts
+        if facts.get("looked") != "yes":
+            verdict.failures.append(f"start {start} did not come so far as to read its slots")
+            continue
+        slots = [known.get(facts[f"slot_{n}"], "something else") for n in (0, 1)]
+        if "something else" in slots:
+            verdict.failures.append(f"start {start}: a slot holds what was never written: {slots}")
+        if flashed and flashed not in slots:
+            verdict.failures.append(f"start {start}: {flashed} was in use before the cut and is gone: {slots}")
+        if start > 0:
+            in_the_middle += None in slots
+        done = re.findall(r"^FLASHED (\S+) 0$", text, re.M)
+        flashed = done[-1] if done else flashed
+    verdict.equal("cuts amid an update", in_the_middle, len(texts) - 1)
+    if not verdict.failures:
+        verdict.tell("the image in use stayed whole, the other slot undeclared")
