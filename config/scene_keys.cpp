@@ -65,10 +65,9 @@ constexpr Key<Scene> kEngineKeys[] = {
 
 constexpr Key<Scene> kForceKeys[] = {
     {"law", "",
-     Choice<Scene>{
-         kForceLaws,
-         [](Scene& s, std::size_t i) { s.settings.force_law = static_cast<ForceLaw>(i); },
-         [](const Scene& s) { return static_cast<std::size_t>(s.settings.force_law); }},
+     Choice<Scene>{kForceLaws,
+                   [](Scene& s, std::size_t i) { s.settings.force_law = static_cast<ForceLaw>(i); },
+                   [](const Scene& s) { return static_cast<std::size_t>(s.settings.force_law); }},
      "`penalty`: a spring for each contact; `least_push` (`regions`): the smallest push that every "
      "contact asks for, right in overlap too"},
     {"stiffness_N_per_m", "N/m",
@@ -226,7 +225,8 @@ constexpr Table<Scene> kTables[] = {
      "truncated; a replay without a budget takes more of both, up to `max_memory_MB`."},
     {"[run]", kRunKeys, "The real-time loop."},
     {"[mock]", kMockKeys,
-     "The mock device: a simulated hand, a mass held to a path by a spring and a damper."},
+     "The mock device: a simulated hand, a mass held to a path by a spring and a damper; with "
+     "`--device mouse` the mouse leads it in the path's place."},
 };
 constexpr Table<Waypoint> kWaypointTable = {
     "[[mock.path]]", kWaypointKeys,

@@ -137,11 +137,19 @@ void lay_out_levels(Arena& arena, const Limits& limits, Layout& out) noexcept {
   out.pressure = arena.array<convex::PressureScratch>(1);
 }
 
+/// What limits ask for, but no more than vertices and edges usually have.
+std::size_t measured_for(const SideCounts& counts, const Limits& limits) noexcept {
+  constexpr std::size_t kOfVertex = 8;
+  constexpr std::size_t kOfEdge = 2;
+  return smaller(limits.contacts, kOfVertex * counts.vertices + kOfEdge * counts.edges);
+}
+
 void lay_out_search(Arena& arena, const Scene& scene, const Limits& limits, Layout& out) noexcept {
   const SideCounts counts = sides_of(scene);
-  out.measured = arena.array<Contact>(limits.contacts);
-  out.constraints = arena.array<force::PushConstraint>(limits.contacts);
-  out.push_points = arena.array<force::PushPoint>(limits.contacts);
+  const std::size_t contacts = measured_for(counts, limits);
+  out.measured = arena.array<Contact>(contacts);
+  out.constraints = arena.array<force::PushConstraint>(contacts);
+  out.push_points = arena.array<force::PushPoint>(contacts);
   out.sides = arena.array<regions::SideMemory>(2 * scene.pairs.size());
   out.views = arena.array<regions::SideView>(2 * scene.pairs.size());
   out.contact_scratch = arena.array<contact::Scratch>(1);
@@ -150,7 +158,7 @@ void lay_out_search(Arena& arena, const Scene& scene, const Limits& limits, Layo
   out.edge_ticks = arena.array<std::uint32_t>(counts.edges);
   out.near = arena.array<regions::NearRegion>(counts.regions);
   out.open = arena.array<std::uint32_t>(counts.regions);
-  out.sources = arena.array<regions::ContactSource>(limits.contacts);
+  out.sources = arena.array<regions::ContactSource>(contacts);
   out.likely = arena.array<regions::LikelyContact>(counts.vertices);
   out.likely_regions = arena.array<double>(counts.regions);
   out.likely_vertices = arena.array<double>(counts.vertices);

@@ -49,6 +49,7 @@ FOLLOWING = {"examples/README.md": EXAMPLES}
 
 # The first line of a block that no test runs, and why.
 NOT_RUN = {
+    "palpate run SCENE": "any scene; live_process_test and live_browser run the view",
     "./tools/demo": "builds everything; CI runs it by itself",
     "sudo tools/setup/host": "changes the machine; tools.host_setup runs it on a root of its own",
     "palpate key secret.pem": "needs a device; tests of flash and key run each command",

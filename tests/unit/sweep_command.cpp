@@ -171,8 +171,7 @@ TEST_F(Sweep, Recommended_scene_of_dotted_keys_is_written_anew) {
 /// Without the levels engine there is no speed-up to tell.
 TEST_F(Sweep, Table_has_no_number_where_there_is_nothing_to_compare_with) {
   folder_.write("cube.palp", test::read_file(PALPATE_TEST_DATA "/bumpy_ball_regions.bin"));
-  folder_.write("scene.toml",
-                test::cube_scene("engine = \"regions\"\n", {}, "law = \"penalty\"\n"));
+  folder_.write("scene.toml", test::cube_scene("engine = \"regions\"\n"));
   folder_.write("poses.csv",
                 "t,body,px,py,pz,qw,qx,qy,qz\n0,tool,1.95,0,0,1,0,0,0\n1,tool,1.94,0,0,1,0,0,0\n");
   const test::Outcome outcome =

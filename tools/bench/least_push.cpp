@@ -26,10 +26,12 @@ constexpr double kPressed = 0.9;  // tolerances
 constexpr double kBudget_us = 400;
 constexpr std::size_t kStarted = 10;
 
-constexpr SceneName kScenes[] = {
-    {"jaws", "jaw_lower", "jaw_upper", true},  {"tips", "jaw_lower", "jaw_lower", false, true},
-    {"golf", "golf_ball", "golf_ball", false}, {"socket", "golf_ball", "golf_shell", true},
-    {"screw", "screw", "nut", true},           {"joint", "ball_joint_head", "ball_joint_cup", true}};
+constexpr SceneName kScenes[] = {{"jaws", "jaw_lower", "jaw_upper", true},
+                                 {"tips", "jaw_lower", "jaw_lower", false, true},
+                                 {"golf", "golf_ball", "golf_ball", false},
+                                 {"socket", "golf_ball", "golf_shell", true},
+                                 {"screw", "screw", "nut", true},
+                                 {"joint", "ball_joint_head", "ball_joint_cup", true}};
 
 Budget within_us(double budget_us) {
   Budget budget;
