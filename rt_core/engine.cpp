@@ -127,12 +127,6 @@ Found find_by_regions(Engine& engine, Meter& meter) noexcept {
   return out;
 }
 
-/// How far the push may be off; 0: not at all.
-double tolerated_push_m(const Settings& s) noexcept {
-  const double twice_k = 2 * s.stiffness_N_per_m;
-  return s.exact || !(twice_k > 0) ? 0 : s.force_tolerance_N / twice_k;
-}
-
 /// So much of a budget, from now on.
 Budget part_of(const Budget& budget, std::uint64_t numerator, std::uint64_t denominator) noexcept {
   constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
@@ -198,7 +192,7 @@ Found find_for_push(Engine& engine, const Budget& budget, Meter& meter,
                     force::PushWrench& push) noexcept {
   constexpr std::uint64_t kGuess[] = {3, 4};
   const Settings& s = engine.settings;
-  regions::ContactSearch search(engine.search, {s.delta_m, tolerated_push_m(s)});
+  regions::ContactSearch search(engine.search, s.delta_m);
   Meter first(part_of(budget, kGuess[0], kGuess[1]), {});
   Pace first_pace(first);
   search.guess(first_pace);

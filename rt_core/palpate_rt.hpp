@@ -169,7 +169,8 @@ struct Certificate {
   /// Regions engine: the sizes of the regions' penalty forces, summed, are within this of the true
   /// ones: stiffness times the sum of all open intervals below delta, each wider by what was left
   /// out of both bodies before baking, of which no tolerance takes account. What there was no time
-  /// to report is covered; depths of overlap, and what else has a Contact::share, are not.
+  /// to report is covered; depths of overlap, and what else has a Contact::share, are not. With the
+  /// least push: how far the force is off at most, before limits (force/least_push.hpp).
   double force_bound_N = 0;
   std::uint64_t units_used = 0;
   bool truncated_by_time = false;    ///< the clock ended refinement

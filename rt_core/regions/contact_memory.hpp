@@ -96,7 +96,6 @@ struct ContactSearchResult {
   double strongest_m = 0;      ///< the largest strength of a contact
   double excess_m = 0;         ///< by how much unmeasured contacts may exceed the push
   double stronger_m = 0;       ///< by how much they may exceed the strongest
-  double min_distance_m = 0;   ///< least signed distance measured; infinity without any
   std::uint32_t likely = 0;    ///< the first of ContactMemory::likely
   bool guessed = false;        ///< nothing that is likely can change the force
   bool proved = false;         ///< nothing left can change force or torque

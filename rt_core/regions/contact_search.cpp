@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/regions/contact_search.hpp"
 
-#include <limits>
-
 #include "rt_core/base/queue.hpp"
 #include "rt_core/contact/facing.hpp"
 #include "rt_core/force/constraints.hpp"
@@ -47,12 +45,9 @@ struct HigherPriority {
 
 }  // namespace
 
-ContactSearch::ContactSearch(ContactMemory& memory, const ContactDemand& demand) noexcept
-    : memory_(memory),
-      tolerated_m_(demand.tolerated_push_m),
-      measure_(memory, pace_, explanation_, out_) {
-  explanation_.delta_m = demand.delta_m;
-  out_.min_distance_m = std::numeric_limits<double>::infinity();
+ContactSearch::ContactSearch(ContactMemory& memory, double delta_m) noexcept
+    : memory_(memory), measure_(memory, pace_, explanation_, out_) {
+  explanation_.delta_m = delta_m;
   ++memory_.tick;
 }
 
@@ -158,7 +153,7 @@ bool ContactSearch::explain(double share, bool edges) noexcept {
     solve();
     const std::uint32_t open = collect_open();
     if (open == 0) out_.excess_m = out_.stronger_m = 0;
-    if (open == 0 || is_tolerable()) return true;
+    if (open == 0) return true;
     MinQueue<std::uint32_t, HigherPriority> queue(memory_.queue.first(open),
                                                   HigherPriority{memory_.near});
     queue.fill();
@@ -175,12 +170,6 @@ bool ContactSearch::explain(double share, bool edges) noexcept {
   }
   solve();
   return collect_open() == 0;
-}
-
-bool ContactSearch::is_tolerable() noexcept {
-  if (!(tolerated_m_ > 0) || out_.push.carrying_count == 0 || explanation_.share < 1) return false;
-  bound_error();
-  return push_error_m(out_) <= tolerated_m_;
 }
 
 /// By how much a region may change the push; what is settled may not.

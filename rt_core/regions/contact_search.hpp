@@ -16,17 +16,12 @@
 
 namespace palpate::regions {
 
-/// What a search is asked for.
-struct ContactDemand {
-  double delta_m = 0;           ///< contact tolerance
-  double tolerated_push_m = 0;  ///< the push may be off by this where anything is felt; 0: exact
-};
-
 /// One tick's search. Poses are set (levels::move). guess() comes first, then prove() where the
 /// push has to be exact, then conclude().
 class ContactSearch {
  public:
-  ContactSearch(ContactMemory& memory, const ContactDemand& demand) noexcept;
+  /// @param delta_m  contact tolerance
+  ContactSearch(ContactMemory& memory, double delta_m) noexcept;
 
   /// Measures what carried in the tick before, and vertices that are likely to change the push
   /// (likely.hpp), those first that may change it most, until none is.
@@ -45,7 +40,6 @@ class ContactSearch {
   void measure_likely(std::uint32_t most) noexcept;
   const LikelyContact* most_violated() noexcept;
   bool explain(double share, bool edges) noexcept;
-  bool is_tolerable() noexcept;
   double excess_m(const NearRegion& item) const noexcept;
   std::uint32_t collect_open() noexcept;
   void solve() noexcept;
@@ -53,7 +47,6 @@ class ContactSearch {
 
   ContactMemory& memory_;
   Pace* pace_ = nullptr;
-  double tolerated_m_;
   ContactSearchResult out_;
   Explanation explanation_;
   Measuring measure_;

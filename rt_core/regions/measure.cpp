@@ -236,7 +236,6 @@ void Measuring::vertex(std::uint32_t side, std::uint32_t index) noexcept {
       view.side, *pace_, index, at.nearest, view.delta, *memory_.scratch);
   at.nearest = distance.foot.triangle;
   at.lower_until = distance.value + view.odometer;
-  out_.min_distance_m = smaller(out_.min_distance_m, distance.value * view.unit_m);
   take({side, index});
 }
 
@@ -253,9 +252,6 @@ void Measuring::edge(std::uint32_t side, std::uint32_t index) noexcept {
   if (lower > contact::kReach * view.delta) return;
   contact::contacts_of_edge(view.side, view.points, *pace_, name, lower < 0 ? -lower : 0,
                             view.delta, *memory_.scratch);
-  for (const contact::FoundContact& found : memory_.scratch->found.all()) {
-    out_.min_distance_m = smaller(out_.min_distance_m, found.distance * view.unit_m);
-  }
   take({side, index | ContactSource::kEdge});
 }
 
