@@ -140,31 +140,41 @@ Budget part_of(const Budget& budget, std::uint64_t numerator, std::uint64_t deno
   return out;
 }
 
-/// Where a search has not proved its answer, contacts that are likely place the force beside those
-/// measured.
+/// Where a search has not proved where the push acts, contacts that are likely tell it beside those
+/// measured: all of them, or every second or third and so on where time would not do.
 /// @return how many constraints and points there are then
-std::size_t add_likely_places(Engine& engine, const regions::ContactSearchResult& found) noexcept {
+std::size_t add_likely_places(Engine& engine, const regions::ContactSearchResult& found,
+                              const Meter& meter) noexcept {
   const regions::ContactMemory& search = engine.search;
+  const double affordable = meter.contacts_affordable() - found.contacts;
+  std::uint32_t stride = 1;
+  while (stride < found.likely && affordable * stride < found.likely) ++stride;
   std::size_t count = found.contacts;
-  for (const regions::LikelyContact& c : search.likely.first(found.likely)) {
+  for (std::uint32_t i = 0; i < found.likely; i += stride) {
+    const regions::LikelyContact& c = search.likely[i];
     if (count == engine.push_points.size()) break;
     if (search.sides[c.side].vertices[c.vertex].measured_tick == search.tick) continue;
+    const Vec3d normal = vec_cast<double>(c.push);
+    const double strength_m = static_cast<double>(c.strength_m);
+    if (strength_m <= force::kTakesPart * found.push.push.along(normal)) continue;
     const regions::SideView& view = search.views[c.side];
     const Vec3d point = view.side.to_target(contact::position(view.side.points, c.vertex));
-    search.constraints[count] = {vec_cast<double>(c.push), static_cast<double>(c.strength_m)};
+    search.constraints[count] = {normal, strength_m};
     engine.push_points[count].arm_m = view.world(point) - engine.poses[engine.tool].position_m;
     ++count;
   }
   return count;
 }
 
-force::PushWrench wrench_of(Engine& engine, const regions::ContactSearchResult& found) noexcept {
+force::PushWrench wrench_of(Engine& engine, const regions::ContactSearchResult& found,
+                            const Meter& meter) noexcept {
   const Pose& tool = engine.poses[engine.tool];
   const std::span<const Contact> contacts = engine.search.contacts.first(found.contacts);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     engine.push_points[i].arm_m = contacts[i].centre_m - tool.position_m;
   }
-  const std::size_t placed = found.proved ? found.contacts : add_likely_places(engine, found);
+  const std::size_t placed =
+      found.places_proved ? found.contacts : add_likely_places(engine, found, meter);
   return force::push_wrench(engine.search.constraints.first(placed), found.push,
                             engine.push_points.first(placed), tool, engine.settings,
                             engine.force.places);
@@ -192,25 +202,28 @@ Found find_for_push(Engine& engine, const Budget& budget, Meter& meter,
                     force::PushWrench& push) noexcept {
   constexpr std::uint64_t kGuess[] = {3, 4};
   const Settings& s = engine.settings;
-  regions::ContactSearch search(engine.search, s.delta_m);
+  regions::ContactSearch search(engine.search, {s.delta_m, 0});
   Meter first(part_of(budget, kGuess[0], kGuess[1]), {});
   Pace first_pace(first);
-  search.guess(first_pace);
+  const bool guessed = search.guess(first_pace);
   meter.charge(first.used());
+  meter.expect_contacts(search.contacts());
   Found out = find_by_regions(engine, meter);
   Pace pace(meter);
-  if (s.exact) search.prove(pace);
+  if (s.exact) {
+    search.prove_push(pace);
+    search.prove_places(pace);
+  }
   const regions::ContactSearchResult& found = search.conclude();
-  push = wrench_of(engine, found);
+  push = wrench_of(engine, found, meter);
   report_carrying(engine, found, out);
   out.clusters = found.push.carrying_count;
-  out.tail_contacts += found.contacts;
+  out.tail_contacts += search.contacts();
   Certificate& c = out.certificate;
-  c.force_bound_N =
-      2 * s.stiffness_N_per_m * (regions::push_error_m(found) + least_error_m(engine.states));
+  c.force_bound_N = 2 * s.stiffness_N_per_m * (found.error_m + least_error_m(engine.states));
   c.truncated_by_memory |= found.contacts_full || push.places_full;
   c.iteration_cap_met |= found.push.status != force::PushStatus::solved;
-  if (!(s.exact ? found.proved : found.guessed) && !found.contacts_full) {
+  if (!(s.exact ? found.places_proved : guessed) && !found.contacts_full) {
     const bool by_units = meter.out_of_units() || first.out_of_units();
     c.truncated_by_units |= by_units;
     c.truncated_by_time |= !by_units;

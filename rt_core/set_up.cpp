@@ -84,7 +84,8 @@ struct Layout {
   std::span<std::uint32_t> open;
   std::span<regions::ContactSource> sources;
   std::span<regions::LikelyContact> likely;
-  std::span<double> likely_regions, likely_vertices;
+  std::span<regions::LikelyRegion> likely_regions;
+  std::span<double> likely_vertices;
 };
 
 std::size_t smaller(std::size_t a, std::size_t b) noexcept { return a < b ? a : b; }
@@ -160,7 +161,7 @@ void lay_out_search(Arena& arena, const Scene& scene, const Limits& limits, Layo
   out.open = arena.array<std::uint32_t>(counts.regions);
   out.sources = arena.array<regions::ContactSource>(contacts);
   out.likely = arena.array<regions::LikelyContact>(counts.vertices);
-  out.likely_regions = arena.array<double>(counts.regions);
+  out.likely_regions = arena.array<regions::LikelyRegion>(counts.regions);
   out.likely_vertices = arena.array<double>(counts.vertices);
 }
 
@@ -225,8 +226,9 @@ void attach_sides(const Layout& layout, const Scene& scene) noexcept {
     side.regions = layout.region_bounds.subspan(first.regions, points.regions.size());
     side.vertices = layout.vertex_bounds.subspan(first.vertices, points.surface_vertices.size());
     side.edge_ticks = layout.edge_ticks.subspan(first.edges, points.surface_edges.size());
-    side.likely = {layout.likely_regions.subspan(first.regions, points.regions.size()),
-                   layout.likely_vertices.subspan(first.vertices, points.surface_vertices.size())};
+    side.likely.regions = layout.likely_regions.subspan(first.regions, points.regions.size());
+    side.likely.vertices =
+        layout.likely_vertices.subspan(first.vertices, points.surface_vertices.size());
     first.regions += points.regions.size();
     first.vertices += points.surface_vertices.size();
     first.edges += points.surface_edges.size();

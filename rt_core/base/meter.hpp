@@ -124,6 +124,10 @@ class Meter {
     const double in_time = 2 * static_cast<double>(half_ns()) / static_cast<double>(query_ns);
     return in_time < units ? in_time : units;
   }
+  /// Whether something that takes so long may still be begun.
+  [[nodiscard]] bool has_time_for(std::uint64_t ns) const noexcept {
+    return !limited_in_time() || now_ns() + ns < stop_ns_;
+  }
   /// Since the meter was made; 0 without a clock.
   [[nodiscard]] std::uint64_t elapsed_ns() const noexcept {
     return budget_.clock_ns != nullptr ? now_ns() - start_ns_ : 0;

@@ -17,6 +17,8 @@ class Pace {
  public:
   explicit Pace(Meter& meter) noexcept : meter_(meter) {}
   void charge(std::uint64_t units) noexcept { meter_.charge(units); }
+  /// See Meter::expect_contacts().
+  void expect_contacts(std::uint64_t contacts) noexcept { meter_.expect_contacts(contacts); }
   /// The next so many units may take what time they need: the clock is not read before.
   void grant(std::uint64_t units) noexcept {
     next_reading_ = meter_.used() + units;
@@ -44,6 +46,12 @@ class Pace {
     }
     return !units_ended_ && !time_ended_;
   }
+  /// The same for something that takes so long, about, and cannot be left half done.
+  [[nodiscard]] bool go_on_for(std::uint64_t ns) noexcept {
+    time_ended_ = time_ended_ || !meter_.has_time_for(ns);
+    return go_on();
+  }
+  [[nodiscard]] std::uint64_t elapsed_ns() const noexcept { return meter_.elapsed_ns(); }
   [[nodiscard]] bool units_ended() const noexcept { return units_ended_; }
   [[nodiscard]] bool time_ended() const noexcept { return time_ended_; }
   [[nodiscard]] std::uint64_t used() const noexcept { return meter_.used(); }

@@ -3,13 +3,6 @@
 
 namespace palpate::contact {
 
-bool SignedDistance::see(const Foot& other) noexcept {
-  const bool nearer = foot.triangle == image::kNone || other.squared < foot.squared ||
-                      (other.squared == foot.squared && other.triangle < foot.triangle);
-  if (nearer) foot = other;
-  return nearer;
-}
-
 double signed_by(const Surface& surface, const Foot& foot, Vec3d x) noexcept {
   const double distance = sqrt_of(foot.squared);
   return dot(x - foot.point, pseudonormal(surface, foot)) < 0 ? -distance : distance;
@@ -22,8 +15,12 @@ SignedDistance signed_distance(const Target& target, Pace& pace, Vec3d x, std::u
   double radius = limit;
   const auto see = [&](std::uint32_t triangle) {
     const Foot foot = closest_point(surface, triangle, x);
-    if (foot.squared > radius * radius || squared_norm(face_normal(surface, triangle)) == 0) return;
-    if (out.see(foot)) radius = sqrt_of(foot.squared);
+    if (foot.squared > radius * radius || !out.is_nearer(foot) ||
+        squared_norm(face_normal(surface, triangle)) == 0) {
+      return;
+    }
+    out.foot = foot;
+    radius = sqrt_of(foot.squared);
   };
   if (hint != image::kNone) see(hint);
   for_each_near(target, pace, x, radius, see);

@@ -92,9 +92,11 @@ struct SignedDistance {
   Foot foot;         ///< foot.triangle is kNone where nothing is within the limit
   double value = 0;  ///< meaningful where there is a foot
 
-  /// Keeps the nearer foot, of equally near ones that of the first triangle.
-  /// @return whether it is the other
-  bool see(const Foot& other) noexcept;
+  /// Whether another foot is nearer; of equally near ones that of the first triangle is.
+  [[nodiscard]] bool is_nearer(const Foot& other) const noexcept {
+    return foot.triangle == image::kNone || other.squared < foot.squared ||
+           (other.squared == foot.squared && other.triangle < foot.triangle);
+  }
 };
 
 /// The distance of x from its foot, the nearest of all: negative inside.

@@ -76,20 +76,30 @@ Vec3d pseudonormal(const Surface& surface, const Foot& foot) noexcept {
   return beyond == image::kNone ? own : own + face_normal(surface, beyond);
 }
 
+namespace {
+
+/// Lets a direction's nearest place within an arc win, where it has one.
+/// @param across  cross(from, to)
+void see_arc(Vec3d direction, Vec3d from, Vec3d to, Vec3d across, NearestNormal& out) noexcept {
+  const double sine2 = squared_norm(across);
+  if (sine2 < kNoArc * kNoArc) return;
+  if (dot(direction, cross(across, from)) < 0 || dot(direction, cross(to, across)) < 0) return;
+  const Vec3d within = direction - (dot(direction, across) / sine2) * across;
+  const double length = norm(within);
+  if (length > out.cosine) out = {(1 / length) * within, length};
+}
+
+void see_corner(Vec3d direction, Vec3d normal, NearestNormal& out) noexcept {
+  const double cosine = dot(direction, normal);
+  if (cosine > out.cosine) out = {normal, cosine};
+}
+
+}  // namespace
+
 NearestNormal nearest_on_arc(Vec3d direction, Vec3d from, Vec3d to) noexcept {
-  const double cosine_from = dot(direction, from);
-  const double cosine_to = dot(direction, to);
-  NearestNormal out =
-      cosine_from > cosine_to ? NearestNormal{from, cosine_from} : NearestNormal{to, cosine_to};
-  const Vec3d across = cross(from, to);
-  const double sine = norm(across);
-  if (sine < kNoArc) return out;
-  const Vec3d axis = (1 / sine) * across;
-  const Vec3d within = direction - dot(direction, axis) * axis;
-  if (dot(cross(from, within), axis) >= 0 && dot(cross(within, to), axis) >= 0) {
-    const double length = norm(within);
-    if (length > out.cosine) out = {(1 / length) * within, length};
-  }
+  NearestNormal out{to, dot(direction, to)};
+  see_corner(direction, from, out);
+  see_arc(direction, from, to, cross(from, to), out);
   return out;
 }
 
@@ -98,19 +108,18 @@ NearestNormal nearest_at_vertex(const Surface& surface, std::uint32_t vertex,
   const image::SurfaceVertex& v = surface.image->surface_vertices[vertex];
   if (v.hull_normals == 0) return {towards, 1};
   const auto hull = surface.image->vertex_normals.subspan(v.first_normal, v.hull_normals);
-  if (hull.size() == 1) {
-    const Vec3d only = direction(hull[0]);
-    return {only, dot(towards, only)};
-  }
   NearestNormal out;
+  for (const image::SurfaceNormal& n : hull) see_corner(towards, direction(n), out);
+  if (hull.size() == 1) return out;
   bool inside = hull.size() > 2;
-  const std::size_t arcs = hull.size() > 2 ? hull.size() : 1;
-  for (std::size_t i = 0; i < arcs; ++i) {
+  for (std::size_t i = 0; i < hull.size(); ++i) {
     const Vec3d from = direction(hull[i]);
-    const Vec3d to = direction(hull[(i + 1) % hull.size()]);
-    inside = inside && dot(towards, cross(from, to)) >= 0;
-    const NearestNormal on_arc = nearest_on_arc(towards, from, to);
-    if (on_arc.cosine > out.cosine) out = on_arc;
+    const Vec3d to = direction(hull[i + 1 < hull.size() ? i + 1 : 0]);
+    const Vec3d across = cross(from, to);
+    // The nearest place is on an arc that the direction is beyond. Two normals have one arc.
+    if (dot(towards, across) >= 0 && hull.size() > 2) continue;
+    inside = false;
+    see_arc(towards, from, to, across, out);
   }
   return inside ? NearestNormal{towards, 1} : out;
 }

@@ -20,6 +20,7 @@ constexpr double kCancelling = 4;
 constexpr double kBesideWhole = 0.5;
 constexpr double kBesideNone = 1;
 constexpr double kRoomForRounding = 1 + 1e-9;
+constexpr double kAnywhere = 1e18;
 
 bool same(double a, double b) noexcept { return (a < b ? b - a : a - b) < kSame; }
 
@@ -36,7 +37,6 @@ class VertexContacts {
         x_(side.to_target(position(side.points, vertex))) {}
 
   SignedDistance run(std::uint32_t hint) noexcept {
-    constexpr double kAnywhere = 1e18;
     SignedDistance at;
     if (!collect(hint, at)) {
       at = signed_distance(side_.target, pace_, x_, hint, kAnywhere);
@@ -78,13 +78,12 @@ class VertexContacts {
     const double radius2 = radius * radius;
     for_each_near(side_.target, pace_, x_, radius, [&](std::uint32_t triangle) {
       const Foot foot = closest_point(side_.target.surface, triangle, x_);
-      if (foot.squared > radius2 ||
-          squared_norm(face_normal(side_.target.surface, triangle)) == 0) {
-        return;
-      }
+      if (foot.squared > radius2) return;
       if (feet_ < kMostFeet) scratch_.feet[feet_] = foot;
       ++feet_;
-      at.see(foot);
+      if (at.is_nearer(foot) && squared_norm(face_normal(side_.target.surface, triangle)) > 0) {
+        at.foot = foot;
+      }
     });
     if (feet_ > kMostFeet || at.foot.triangle == image::kNone) return false;
     at.value = signed_by(side_.target.surface, at.foot, x_);
@@ -119,16 +118,20 @@ class VertexContacts {
 
   void add(Vec3d normal, double distance, double weight, const Foot& foot) noexcept {
     if (!(weight > 0) || distance > reach_) return;
-    const double w = weight * within_reach(distance, delta_) * facing(faces(normal));
+    const double near = weight * within_reach(distance, delta_);
+    const double w = near > 0 ? near * facing(faces(normal)) : 0;
     if (w > 0) scratch_.found.add({normal, distance, w, x_, foot.point, foot.triangle});
   }
 
   void add_way(Vec3d normal, double length, double agrees, const Foot& foot) noexcept {
+    const double direct = directness(depth_, length);
+    if (direct == 0 && length / agrees >= shortest_) return;
     const double willing = clamp01(1 + 2 * faces(normal));
-    const WayOut way{normal,           foot.point,
-                     length,           directness(depth_, length) * agrees * willing,
+    const WayOut way{normal,           foot.point,   length, direct * agrees * willing,
                      agrees * willing, foot.triangle};
     if (!(way.facing > 0)) return;
+    const double weighted = length / way.facing;
+    shortest_ = weighted < shortest_ ? weighted : shortest_;
     std::uint32_t weakest = 0;
     for (std::uint32_t i = 0; i < ways_; ++i) {
       if (same(scratch_.ways[i].length, length) &&
@@ -214,7 +217,8 @@ class VertexContacts {
   bool inside_ = false;
   double depth_ = 0;
   std::uint32_t ways_ = 0;
-  std::uint32_t feet_ = 0;  // in scratch_.feet
+  std::uint32_t feet_ = 0;       // in scratch_.feet
+  double shortest_ = kAnywhere;  // of ways out, by how far they are faced
 };
 
 }  // namespace

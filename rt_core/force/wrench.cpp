@@ -6,8 +6,6 @@
 namespace palpate::force {
 namespace {
 
-/// A contact takes part in the torque where it is stronger than this share of the push.
-constexpr double kTakesPart = 0.5;
 /// Sums that are this small a share of their parts are rounding.
 constexpr double kCancelled = 1e-12;
 /// As in the least push: coincident normals stay solvable.

@@ -12,6 +12,9 @@
 
 namespace palpate::force {
 
+/// A contact takes part in the torque where it is stronger than this share of the push.
+inline constexpr double kTakesPart = 0.5;
+
 /// Where a contact pushes the tool. World axes.
 struct PushPoint {
   Vec3d arm_m{};    ///< from the tool's origin

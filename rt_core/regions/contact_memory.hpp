@@ -60,6 +60,8 @@ struct ContactSource {
   static constexpr std::uint32_t kEdge = 0x80000000u;
   std::uint32_t side = 0;
   std::uint32_t item = 0;
+  [[nodiscard]] bool is_edge() const noexcept { return (item & kEdge) != 0; }
+  bool operator==(const ContactSource&) const = default;
 };
 
 /// What was carrying in the last tick: measured first in the next.
@@ -86,19 +88,21 @@ struct ContactMemory {
   WarmStart warm;
   PushSoFar push;
   std::uint32_t tick = 0;
-  std::uint32_t next_look = 0;  ///< of the near regions: where looking goes on where time ended it
+  std::uint64_t measure_ns = 0;  ///< that measuring one vertex or edge takes, about
 };
 
 /// What a search has found.
 struct ContactSearchResult {
-  std::uint32_t contacts = 0;  ///< the first of ContactMemory::contacts
-  force::PushResult push;      ///< of their constraints, in metres
-  double strongest_m = 0;      ///< the largest strength of a contact
-  double excess_m = 0;         ///< by how much unmeasured contacts may exceed the push
-  double stronger_m = 0;       ///< by how much they may exceed the strongest
-  std::uint32_t likely = 0;    ///< the first of ContactMemory::likely
-  bool guessed = false;        ///< nothing that is likely can change the force
-  bool proved = false;         ///< nothing left can change force or torque
+  std::uint32_t contacts = 0;   ///< the first of ContactMemory::contacts
+  force::PushResult push;       ///< of their constraints, in metres
+  double strongest_m = 0;       ///< the largest strength of a contact
+  double error_m = 0;           ///< how far the push may be off, in length
+  double nearest_m = kUnknown;  ///< distance of the nearest points measured; below 0: of a vertex
+                                ///< that is inside
+  double lower_m = kUnknown;    ///< bound of the signed distance of what has not been measured
+  std::uint32_t likely = 0;     ///< the first of ContactMemory::likely
+  bool push_proved = false;     ///< nothing left changes the push by more than is tolerated
+  bool places_proved = false;   ///< nothing left changes where it acts
   bool contacts_full = false;
 };
 

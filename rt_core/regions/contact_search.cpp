@@ -3,7 +3,9 @@
 
 #include "rt_core/base/queue.hpp"
 #include "rt_core/contact/facing.hpp"
+#include "rt_core/contact/proximity.hpp"
 #include "rt_core/force/constraints.hpp"
+#include "rt_core/force/wrench.hpp"
 #include "rt_core/regions/measure.hpp"
 
 namespace palpate::regions {
@@ -19,8 +21,6 @@ constexpr std::uint32_t kLeastAtOnce = 4;
 /// after each so many rounds.
 constexpr std::uint32_t kFewPerVisit = 4;
 constexpr std::uint32_t kRoundsToDouble = 4;
-/// A contact counts in the torque where it is stronger than half of the push (force/wrench.hpp).
-constexpr double kTorqueShare = 0.5;
 /// Work units: regions that are looked through, and contacts that a push is solved for.
 constexpr std::uint32_t kCollectedPerUnit = 4;
 constexpr std::uint32_t kSolvedPerUnit = 8;
@@ -32,8 +32,9 @@ constexpr std::uint32_t kLooksAtOnce = 256;
 constexpr std::uint32_t kFewGuesses = 2;
 /// Likely contacts that exceed the push by less, in delta, are not worth it.
 constexpr double kLikelyExcess = 0.01;
-/// Work units: vertices that are looked at, and likely contacts that are compared with the push.
-constexpr std::uint32_t kLookedPerUnit = 8;
+/// Work units: vertices and regions that are looked at, and likely contacts that are compared with
+/// the push.
+constexpr std::uint32_t kLookedPerUnit = 2;
 constexpr std::uint32_t kScannedPerUnit = 64;
 
 struct HigherPriority {
@@ -45,27 +46,31 @@ struct HigherPriority {
 
 }  // namespace
 
-ContactSearch::ContactSearch(ContactMemory& memory, double delta_m) noexcept
-    : memory_(memory), measure_(memory, pace_, explanation_, out_) {
-  explanation_.delta_m = delta_m;
+ContactSearch::ContactSearch(ContactMemory& memory, const PushDemand& demand) noexcept
+    : memory_(memory), demand_(demand), measure_(memory, pace_, explanation_, out_) {
+  explanation_.delta_m = demand.delta_m;
   ++memory_.tick;
 }
 
-void ContactSearch::guess(Pace& pace) noexcept {
+bool ContactSearch::guess(Pace& pace) noexcept {
   pace_ = &pace;
   gather();
-  for (std::uint32_t i = 0; i < memory_.warm.count && pace.go_on(); ++i) {
-    measure_.source(memory_.warm.sources[i]);
+  for (std::uint32_t i = 0; i < memory_.warm.count && may_measure(); ++i) {
+    measure(memory_.warm.sources[i]);
   }
   look_and_measure();
-  out_.guessed = pace.go_on();
+  return pace.go_on();
 }
 
-void ContactSearch::prove(Pace& pace) noexcept {
+void ContactSearch::prove_push(Pace& pace) noexcept {
   pace_ = &pace;
-  // Vertices tell most for their time; then edges, and what counts in the torque alone.
-  force_proved_ = explain(1, false) && explain(1, true);
-  out_.proved = force_proved_ && explain(kTorqueShare, true) && !out_.contacts_full;
+  // Vertices tell most for their time.
+  out_.push_proved = explain(1, false) && explain(1, true) && !out_.contacts_full;
+}
+
+void ContactSearch::prove_places(Pace& pace) noexcept {
+  pace_ = &pace;
+  out_.places_proved = out_.push_proved && explain(force::kTakesPart, true) && !out_.contacts_full;
 }
 
 /// Regions that may be within reach.
@@ -81,6 +86,7 @@ void ContactSearch::gather() noexcept {
     const double reach =
         contact::kReach * view.delta > with_detail ? contact::kReach * view.delta : with_detail;
     const double deepest = -view.side.target.surface.scale;  // nothing is deeper than the radius
+    likely_contacts(side).begin_tick();
     const std::span<const RegionBound> bounds = memory_.sides[side].regions;
     for (std::uint32_t region = 0; region < bounds.size(); ++region) {
       const double lower = bounds[region].lower_until - view.odometer;
@@ -90,23 +96,61 @@ void ContactSearch::gather() noexcept {
   }
 }
 
-/// Measures the vertices that are likely to change the push most, until none is. What is likely
-/// is looked up in parts, so that some of it is measured however early time ends; the next tick
-/// goes on with the regions that are left.
+LikelyContacts ContactSearch::likely_contacts(std::uint32_t side) noexcept {
+  return {memory_.views[side], side, memory_.sides[side].likely, memory_.push};
+}
+
+/// Measures the vertices that are likely to change the push most, until none is. Regions are looked
+/// at in the order of what they promise, and some vertices are measured after each part of them,
+/// however early time ends.
 void ContactSearch::look_and_measure() noexcept {
-  std::uint32_t looked = 0;
-  while (looked < near_ && pace_->go_on()) {
-    std::uint32_t of_part = 0;
-    for (; looked < near_ && of_part < kLooksAtOnce && pace_->go_on(); ++looked) {
-      const NearRegion& item = memory_.near[(memory_.next_look + looked) % near_];
-      LikelyContacts likely(memory_.views[item.side], item.side, memory_.sides[item.side].likely,
-                            memory_.push);
-      of_part += likely.look(item.region, memory_.likely, out_.likely);
+  MinQueue<std::uint32_t, HigherPriority> due(memory_.queue.first(collect_due()),
+                                              HigherPriority{memory_.near});
+  due.fill();
+  while (!due.empty() && pace_->go_on()) {
+    for (std::uint32_t of_part = 0; of_part < kLooksAtOnce && !due.empty() && pace_->go_on();
+         due.pop()) {
+      NearRegion& item = memory_.near[due.top()];
+      item.lower = raised_by_grid(item);
+      const std::uint32_t looks =
+          1 + likely_contacts(item.side).look(item.region, memory_.likely, out_.likely);
+      of_part += looks;
+      pace_->charge((looks + kLookedPerUnit - 1) / kLookedPerUnit);
     }
-    pace_->charge(of_part / kLookedPerUnit);
-    measure_likely(looked < near_ ? kFewGuesses : kMostGuesses);
+    pace_->expect_contacts(out_.contacts + out_.likely);
+    measure_likely(due.empty() ? kMostGuesses : kFewGuesses);
   }
-  memory_.next_look = near_ > 0 ? (memory_.next_look + looked) % near_ : 0;
+}
+
+/// Regions that are due to be looked at, and what they promise.
+std::uint32_t ContactSearch::collect_due() noexcept {
+  std::uint32_t due = 0;
+  for (std::uint32_t i = 0; i < near_ && pace_->go_on(); ++i) {
+    NearRegion& item = memory_.near[i];
+    LikelyContacts likely = likely_contacts(item.side);
+    if (memory_.sides[item.side].likely.regions[item.region].never_looked()) {
+      item.lower = raised_by_grid(item);
+      likely.promise_by_distance(item.region, item.lower,
+                                 sphere_of(memory_.views[item.side], item.region).radius);
+      pace_->charge(1);
+    }
+    if (!likely.is_due(item.region)) continue;
+    item.priority = likely.promise(item.region);
+    memory_.queue[due++] = i;
+  }
+  return due;
+}
+
+/// What is known of a region's distance, with what the other body's grid tells at its centre.
+double ContactSearch::raised_by_grid(const NearRegion& item) noexcept {
+  const SideView& view = memory_.views[item.side];
+  const Sphere sphere = sphere_of(view, item.region);
+  const double bound =
+      contact::distance_bound(view.side.target.surface, view.side.to_target(sphere.centre)) -
+      sphere.radius;
+  if (bound <= item.lower) return item.lower;
+  memory_.sides[item.side].regions[item.region].lower_until = bound + view.odometer;
+  return bound;
 }
 
 void ContactSearch::measure_likely(std::uint32_t most) noexcept {
@@ -114,13 +158,22 @@ void ContactSearch::measure_likely(std::uint32_t most) noexcept {
     const double strength_m = static_cast<double>(c.strength_m);
     likely_strongest_m_ = strength_m > likely_strongest_m_ ? strength_m : likely_strongest_m_;
   }
-  for (std::uint32_t round = 0; round < most && pace_->go_on(); ++round) {
+  for (std::uint32_t round = 0; round < most && may_measure(); ++round) {
     solve();
     const LikelyContact* const next = most_violated();
     if (next == nullptr) return;
-    measure_.source({next->side, next->vertex});
+    measure({next->side, next->vertex});
   }
   solve();
+}
+
+bool ContactSearch::may_measure() noexcept { return pace_->go_on_for(memory_.measure_ns); }
+
+/// One vertex or edge, however long it takes.
+void ContactSearch::measure(const ContactSource& source) noexcept {
+  const std::uint64_t begun_ns = pace_->elapsed_ns();
+  measure_.source(source);
+  follow(memory_.measure_ns, pace_->elapsed_ns() - begun_ns);
 }
 
 /// Of likely contacts that are not measured, that which exceeds the push most; null: none does.
@@ -152,7 +205,6 @@ bool ContactSearch::explain(double share, bool edges) noexcept {
   for (std::uint32_t round = 0; round < kMostRounds; ++round) {
     solve();
     const std::uint32_t open = collect_open();
-    if (open == 0) out_.excess_m = out_.stronger_m = 0;
     if (open == 0) return true;
     MinQueue<std::uint32_t, HigherPriority> queue(memory_.queue.first(open),
                                                   HigherPriority{memory_.near});
@@ -206,6 +258,7 @@ void ContactSearch::solve() noexcept {
   out_.push = force::least_push(constraints, {start, out_.push.carrying_count});
   pace_->charge(out_.contacts / kSolvedPerUnit);
   const force::Push& push = out_.push.push;
+  explanation_.negligible_m = force::tolerated_violation(push, 0.5 * demand_.tolerance_m);
   const bool same = push.vector == explanation_.push.vector &&
                     push.squeeze_diagonal == explanation_.push.squeeze_diagonal &&
                     push.squeeze_mixed == explanation_.push.squeeze_mixed &&
@@ -215,34 +268,44 @@ void ContactSearch::solve() noexcept {
   explanation_.strongest_m = out_.strongest_m;
 }
 
-/// By how much what is not measured may change the push.
+/// By how much what is not measured may change the push. Where the proof has not come to its end,
+/// by what the nearest may be against all directions.
 void ContactSearch::bound_error() noexcept {
-  out_.excess_m = out_.stronger_m = 0;
-  for (std::uint32_t i = 0; i < near_; ++i) {
-    const NearRegion& item = memory_.near[i];
-    const double excess = excess_m(item);
-    if (!explanation_.is_open(excess)) continue;
-    const double stronger = explanation_.stronger_m(item.lower * memory_.views[item.side].unit_m);
-    if (stronger > out_.stronger_m) out_.stronger_m = stronger;
-    if (excess > out_.excess_m) out_.excess_m = excess;
+  const double lower_m = out_.lower_m = least_lower_m();
+  double excess_m = 0;
+  double stronger_m = 0;
+  if (out_.push_proved) {
+    excess_m = stronger_m = explanation_.negligible_m;
+  } else if (lower_m < contact::kReach * explanation_.delta_m) {
+    const double strength_m = explanation_.strength_of_distance(lower_m);
+    excess_m = strength_m + norm(out_.push.push.vector);
+    stronger_m = strength_m > out_.strongest_m ? strength_m - out_.strongest_m : 0;
   }
+  // Those that are missing, and those that fade more the stronger the strongest is.
+  out_.error_m = force::push_error(out_.push.push, excess_m) +
+                 force::push_error(out_.push.push, force::kFadedShare * stronger_m);
+}
+
+/// Of what has not been measured.
+double ContactSearch::least_lower_m() const noexcept {
+  double lower_m = kUnknown;
+  for (const NearRegion& item : memory_.near.first(near_)) {
+    const double unmeasured_m = item.lower * memory_.views[item.side].unit_m;
+    lower_m = unmeasured_m < lower_m ? unmeasured_m : lower_m;
+  }
+  return lower_m;
 }
 
 /// What is left open, and what carries.
 const ContactSearchResult& ContactSearch::conclude() noexcept {
-  if (!force_proved_) bound_error();
-  memory_.push.changed_m += 2 * norm(out_.push.push.vector - memory_.push.push.vector);
+  bound_error();
+  memory_.push.changed_m += force::difference(out_.push.push, memory_.push.push);
   memory_.push.push = out_.push.push;
   memory_.warm.count = out_.push.carrying_count;
   for (std::uint32_t i = 0; i < out_.push.carrying_count; ++i) {
     memory_.warm.sources[i] = memory_.sources[out_.push.carrying[i].index];
   }
   return out_;
-}
-
-double push_error_m(const ContactSearchResult& found) noexcept {
-  return force::push_error(found.push.push, found.excess_m) +
-         force::push_error(found.push.push, 0.5 * found.stronger_m);
 }
 
 }  // namespace palpate::regions

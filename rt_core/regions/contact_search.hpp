@@ -16,29 +16,45 @@
 
 namespace palpate::regions {
 
-/// One tick's search. Poses are set (levels::move). guess() comes first, then prove() where the
-/// push has to be exact, then conclude().
+/// What is asked of a search.
+struct PushDemand {
+  double delta_m = 0;      ///< contact tolerance
+  double tolerance_m = 0;  ///< the push may be off by so much; 0: exact
+};
+
+/// One tick's search. Poses are set (levels::move). guess() comes first, then prove_push(), then
+/// prove_places() where the torque has to be exact, then conclude().
 class ContactSearch {
  public:
-  /// @param delta_m  contact tolerance
-  ContactSearch(ContactMemory& memory, double delta_m) noexcept;
+  ContactSearch(ContactMemory& memory, const PushDemand& demand) noexcept;
 
   /// Measures what carried in the tick before, and vertices that are likely to change the push
   /// (likely.hpp), those first that may change it most, until none is.
+  /// @return whether nothing is, else the budget has ended
   /// Cost: the budget and one contact's evaluation, and O(regions).
-  void guess(Pace& pace) noexcept;
-  /// Measures what is not proved to change nothing, until all is.
+  bool guess(Pace& pace) noexcept;
+  /// Measures what is not proved to leave the push as it is, until all is.
   /// Cost: the budget and one contact's evaluation; without a budget at most kMostRounds solutions
-  /// of the push.
-  void prove(Pace& pace) noexcept;
+  /// of the push, twice.
+  void prove_push(Pace& pace) noexcept;
+  /// Likewise what may count in the torque.
+  void prove_places(Pace& pace) noexcept;
   /// Bounds what is left, and keeps what carries for the next tick. O(regions)
   const ContactSearchResult& conclude() noexcept;
+  /// How many are known, measured or likely.
+  [[nodiscard]] std::uint32_t contacts() const noexcept { return out_.contacts + out_.likely; }
 
  private:
   void gather() noexcept;
+  LikelyContacts likely_contacts(std::uint32_t side) noexcept;
   void look_and_measure() noexcept;
+  std::uint32_t collect_due() noexcept;
+  bool may_measure() noexcept;
+  void measure(const ContactSource& source) noexcept;
   void measure_likely(std::uint32_t most) noexcept;
   const LikelyContact* most_violated() noexcept;
+  [[nodiscard]] double least_lower_m() const noexcept;
+  double raised_by_grid(const NearRegion& item) noexcept;
   bool explain(double share, bool edges) noexcept;
   double excess_m(const NearRegion& item) const noexcept;
   std::uint32_t collect_open() noexcept;
@@ -46,17 +62,13 @@ class ContactSearch {
   void bound_error() noexcept;
 
   ContactMemory& memory_;
+  PushDemand demand_;
   Pace* pace_ = nullptr;
   ContactSearchResult out_;
   Explanation explanation_;
   Measuring measure_;
   std::uint32_t near_ = 0;
   double likely_strongest_m_ = 0;
-  bool force_proved_ = false;
 };
-
-/// How far unmeasured contacts may leave the push off: those that are missing, and those that fade
-/// more the stronger the strongest is.
-[[nodiscard]] double push_error_m(const ContactSearchResult& found) noexcept;
 
 }  // namespace palpate::regions

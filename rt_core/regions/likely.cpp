@@ -3,13 +3,20 @@
 
 #include "rt_core/contact/facing.hpp"
 #include "rt_core/contact/proximity.hpp"
+#include "rt_core/force/wrench.hpp"
 
 namespace palpate::regions {
 namespace {
 
-/// A push exceeds a strength for as long as motion and changes of the push leave this share of what
-/// it exceeds it by: normals change, too.
+/// A contact stays too weak for as long as motion and changes of the push leave this share of what
+/// it is short of: normals change, too.
 constexpr double kRests = 0.5;
+/// A vertex that does not face the surface rests for so many delta.
+constexpr double kTurnedAway = 0.05;
+/// One that is out of reach may come nearer so many times as fast as in the last tick, and no
+/// slower than this share of the way.
+constexpr double kFaster = 2;
+constexpr double kSlowest = 0.25;
 
 constexpr double kNothing = 1e300;
 
@@ -48,7 +55,7 @@ float facing_cosine(const ImageView& image, const image::SurfaceVertex& v,
 
 }  // namespace
 
-LikelyContacts::LikelyContacts(const SideView& view, std::uint32_t side, const LikelyMemory& memory,
+LikelyContacts::LikelyContacts(const SideView& view, std::uint32_t side, LikelyMemory& memory,
                                const PushSoFar& push) noexcept
     : view_(view),
       target_(view.side.target.surface),
@@ -56,66 +63,82 @@ LikelyContacts::LikelyContacts(const SideView& view, std::uint32_t side, const L
       push_(push),
       side_(side),
       odometer_(view.odometer + push.changed_m / view.unit_m),
-      turn_(to_float(view.side.rotation)),
-      move_(vec_cast<float>((1 / target_.scale) * view.side.translation)),
       scale_(static_cast<float>(view.side.points.scale / target_.scale)) {}
 
-double LikelyContacts::distance_of_centre(std::uint32_t region) const noexcept {
-  const Sphere sphere = sphere_of(view_, region);
-  const Vec3d x = view_.side.to_target(sphere.centre);
-  const contact::Foot foot = contact::closest_point(target_, contact::triangle_near(target_, x), x);
-  const bool inside = dot(x - foot.point, contact::pseudonormal(target_, foot)) < 0;
-  return (inside ? -1 : 1) * sqrt_of(foot.squared) - sphere.radius;
+void LikelyContacts::begin_tick() noexcept {
+  memory_.before = memory_.now;
+  memory_.now = {to_float(view_.side.rotation),
+                 vec_cast<float>((1 / target_.scale) * view_.side.translation), view_.odometer};
+}
+
+double LikelyContacts::promise(std::uint32_t region) const noexcept {
+  const LikelyRegion& r = memory_.regions[region];
+  return r.promise + 0.5 * (odometer_ - r.promised_at);
+}
+
+void LikelyContacts::promise_by_distance(std::uint32_t region, double lower,
+                                         double radius) noexcept {
+  LikelyRegion& r = memory_.regions[region];
+  r.promise = view_.delta - (lower + 0.5 * radius);
+  r.promised_at = odometer_;
+  r.until = lower > view_.delta ? lower - view_.delta + odometer_ : odometer_;
 }
 
 std::uint32_t LikelyContacts::look(std::uint32_t region, std::span<LikelyContact> out,
                                    std::uint32_t& count) noexcept {
-  double& region_until = memory_.regions[region];
-  if (region_until > odometer_) return 0;
-  const double beyond = distance_of_centre(region) - view_.delta;
-  if (beyond > 0) {
-    region_until = beyond + odometer_;
-    return 1;
-  }
+  LikelyRegion& r = memory_.regions[region];
   const image::SurfaceRun run = view_.image().surface_runs[region];
   double least = kNothing;
-  std::uint32_t looked = 1;
+  double nearest = kNothing;
+  double strongest = 0;
+  std::uint32_t looked = 0;
   for (std::uint32_t i = 0; i < run.vertices && count < out.size(); ++i) {
     double& until = memory_.vertices[run.first_vertex + i];
     if (!(until > odometer_)) {
-      const double distance = look_at(run.first_vertex + i, out[count]);
-      until = rest_of(distance, out[count]) + odometer_;
-      if (out[count].strength_m > 0) ++count;
+      const Found found = look_at(run.first_vertex + i, out[count]);
+      until = rest_of(found, out[count]) + odometer_;
+      nearest = found.distance < nearest ? found.distance : nearest;
+      const double strength = static_cast<double>(out[count].strength_m) / view_.unit_m;
+      strongest = strength > strongest ? strength : strongest;
+      if (strength > 0) ++count;
       ++looked;
     }
     least = until < least ? until : least;
   }
-  region_until = least;
+  r.until = least;
+  r.promise = strongest > 0 || nearest < view_.delta ? strongest : view_.delta - nearest;
+  r.promised_at = odometer_;
   return looked;
 }
 
-double LikelyContacts::rest_of(double distance, const LikelyContact& contact) const noexcept {
-  if (!(contact.strength_m > 0)) return distance > view_.delta ? distance - view_.delta : 0;
-  const double exceeded_m =
-      push_.push.along(vec_cast<double>(contact.push)) - static_cast<double>(contact.strength_m);
-  return exceeded_m > 0 ? kRests * exceeded_m / view_.unit_m : 0;
+double LikelyContacts::rest_of(const Found& found, const LikelyContact& contact) const noexcept {
+  if (!(contact.strength_m > 0)) {
+    if (found.distance <= view_.delta) return kTurnedAway * view_.delta;
+    const double faster = kFaster * found.rate;
+    const double rate = faster < kSlowest ? kSlowest : faster < 1 ? faster : 1;
+    return (found.distance - view_.delta) / rate;
+  }
+  const double short_of_m = force::kTakesPart * push_.push.along(vec_cast<double>(contact.push)) -
+                            static_cast<double>(contact.strength_m);
+  return short_of_m > 0 ? kRests * short_of_m / view_.unit_m : 0;
 }
 
-double LikelyContacts::look_at(std::uint32_t vertex, LikelyContact& out) const noexcept {
+LikelyContacts::Found LikelyContacts::look_at(std::uint32_t vertex,
+                                              LikelyContact& out) const noexcept {
   out.strength_m = 0;
   const ImageView& points = view_.image();
   const image::SurfaceVertex& v = points.surface_vertices[vertex];
-  const Vec3f x = scale_ * (turn_ * read(v.position)) + move_;
-  const std::uint32_t triangle = contact::triangle_near(*target_.image, x);
+  const Vec3f scaled = scale_ * read(v.position);
+  const Vec3f x = memory_.now(scaled);
+  const std::uint32_t triangle = contact::cell_at(*target_.image, x).triangle;
   const image::RegionTriangle& t = target_.image->region_triangles[triangle];
   const Vec3f corner = read(t.corners);
   const Vec3f normal = cross(read(t.corners + 3) - corner, read(t.corners + 6) - corner);
   const float length = norm(normal);
-  if (!(length > 0)) return 0;
+  if (!(length > 0)) return {};
   Place place{dot(normal, x - corner) / length, (1 / length) * normal};
   const auto delta = static_cast<float>(view_.delta / target_.scale);
-  if (place.distance >= delta) return static_cast<double>(place.distance) * target_.scale;
-  if (!is_over(t, normal, x)) {
+  if (place.distance < delta && !is_over(t, normal, x)) {
     const Vec3d at = target_.scale * vec_cast<double>(x);
     const contact::Foot foot = contact::closest_point(target_, triangle, at);
     const Vec3d apart = at - foot.point;
@@ -126,17 +149,23 @@ double LikelyContacts::look_at(std::uint32_t vertex, LikelyContact& out) const n
       place.distance = static_cast<float>((inside ? -distance : distance) / target_.scale);
     }
   }
-  const double distance = static_cast<double>(place.distance) * target_.scale;
-  if (place.distance >= delta) return distance;
-  const float cosine = facing_cosine(points, v, transpose(turn_) * (-place.normal));
+  Found found{static_cast<double>(place.distance) * target_.scale, 1};
+  if (place.distance >= delta) {
+    const double way = memory_.now.odometer - memory_.before.odometer;
+    const double nearer =
+        static_cast<double>(dot(place.normal, memory_.before(scaled) - x)) * target_.scale;
+    if (way > 0) found.rate = (nearer > 0 ? nearer : -nearer) / way;
+    return found;
+  }
+  const float cosine = facing_cosine(points, v, transpose(memory_.now.turn) * (-place.normal));
   const double weight = contact::facing(static_cast<double>(cosine));
-  out.strength_m = static_cast<float>(weight * (view_.delta - distance) * view_.unit_m);
+  out.strength_m = static_cast<float>(weight * (view_.delta - found.distance) * view_.unit_m);
   out.weight = static_cast<float>(weight);
   const Vec3d push = view_.to_world * vec_cast<double>(place.normal);
   out.push = vec_cast<float>(view_.points_of_tool ? push : -push);
   out.side = side_;
   out.vertex = vertex;
-  return distance;
+  return found;
 }
 
 }  // namespace palpate::regions

@@ -21,15 +21,39 @@ struct LikelyContact {
   std::uint32_t vertex = 0;
 };
 
-/// What is kept of one side from tick to tick: up to which odometer a region or a vertex need not
-/// be looked at again. One that is out of reach rests until the bodies have moved by what it is
-/// beyond; one that the push exceeds, until motion and changes of the push have used that up.
-struct LikelyMemory {
-  std::span<double> regions;
-  std::span<double> vertices;
+/// What is kept of a region's likely contacts from tick to tick.
+struct LikelyRegion {
+  double until = 0;                   ///< up to this odometer no vertex is due to be looked at
+  double promise = 0;                 ///< when last looked at: the largest strength, or less than
+                                      ///< 0: what the nearest vertex is beyond delta; in units
+  double promised_at = kNeverLooked;  ///< odometer then
+
+  static constexpr double kNeverLooked = -1;
+  [[nodiscard]] bool never_looked() const noexcept { return promised_at < 0; }
 };
 
-/// The push of the tick before, and how much it has changed in all ticks so far; metres.
+/// Where a body's image is in the coordinates of another's.
+struct Placement {
+  Mat3f turn{};
+  Vec3f move{};
+  double odometer = 0;  ///< SideView::odometer
+
+  [[nodiscard]] Vec3f operator()(Vec3f scaled) const noexcept { return turn * scaled + move; }
+};
+
+/// What is kept of one side from tick to tick. A vertex rests up to an odometer: one that is out of
+/// reach until the bodies have moved by what it is beyond, the slower it comes nearer the longer;
+/// one that is too weak to count, until motion and changes of the push have used up what it is
+/// short of that.
+struct LikelyMemory {
+  std::span<LikelyRegion> regions;
+  std::span<double> vertices;
+  Placement now;
+  Placement before;  ///< of the last tick
+};
+
+/// The push of the tick before, and by how much that in any direction may have changed in all ticks
+/// so far; metres.
 struct PushSoFar {
   force::Push push;
   double changed_m = 0;
@@ -38,8 +62,19 @@ struct PushSoFar {
 /// Looks at the regions of one side.
 class LikelyContacts {
  public:
-  LikelyContacts(const SideView& view, std::uint32_t side, const LikelyMemory& memory,
+  LikelyContacts(const SideView& view, std::uint32_t side, LikelyMemory& memory,
                  const PushSoFar& push) noexcept;
+
+  /// Takes note of this tick's poses: once a tick, before all else.
+  void begin_tick() noexcept;
+
+  [[nodiscard]] bool is_due(std::uint32_t region) const noexcept {
+    return !(memory_.regions[region].until > odometer_);
+  }
+  /// The larger, the sooner it should be looked at: what it promised, and half of the motion since.
+  [[nodiscard]] double promise(std::uint32_t region) const noexcept;
+  /// Of a region that has never been looked at, by a bound of its distance (in units).
+  void promise_by_distance(std::uint32_t region, double lower, double radius) noexcept;
 
   /// Appends those of a region's vertices.
   /// @param count  how many of `out` are in use; grows up to its size
@@ -49,20 +84,22 @@ class LikelyContacts {
                      std::uint32_t& count) noexcept;
 
  private:
-  [[nodiscard]] double distance_of_centre(std::uint32_t region) const noexcept;
-  /// @return the likely distance, in units of the pair; strength 0 where it is no contact
-  double look_at(std::uint32_t vertex, LikelyContact& out) const noexcept;
+  /// Where a vertex is likely to be.
+  struct Found {
+    double distance = 0;  ///< signed, in units of the pair
+    double rate = 1;      ///< by how much that has changed in the last tick, of the way
+  };
+  /// @param out  strength 0 where it is no contact
+  Found look_at(std::uint32_t vertex, LikelyContact& out) const noexcept;
   /// How long a vertex rests, in units of the pair.
-  [[nodiscard]] double rest_of(double distance, const LikelyContact& contact) const noexcept;
+  [[nodiscard]] double rest_of(const Found& found, const LikelyContact& contact) const noexcept;
 
   const SideView& view_;
   const contact::Surface& target_;
-  LikelyMemory memory_;
+  LikelyMemory& memory_;
   const PushSoFar& push_;
   std::uint32_t side_;
   double odometer_;
-  Mat3f turn_;   ///< P to Q
-  Vec3f move_;   ///< likewise, in Q's image coordinates
   float scale_;  ///< of P's image coordinates in those of Q's
 };
 

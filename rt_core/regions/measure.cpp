@@ -2,6 +2,7 @@
 #include "rt_core/regions/measure.hpp"
 
 #include "rt_core/contact/facing.hpp"
+#include "rt_core/contact/proximity.hpp"
 #include "rt_core/regions/explained.hpp"
 
 namespace palpate::regions {
@@ -32,11 +33,9 @@ double Explanation::strength_of_distance(double lower_m) const noexcept {
   return lower_m >= 0 ? delta_m - lower_m : delta_m - contact::kMostDetour * lower_m;
 }
 
-double Explanation::stronger_m(double lower_m) const noexcept {
-  return strength_of_distance(lower_m) - strongest_m;
+bool Explanation::is_open(double excess) const noexcept {
+  return excess > negligible_m + kNegligible * delta_m;
 }
-
-bool Explanation::is_open(double excess) const noexcept { return excess > kNegligible * delta_m; }
 
 double Explanation::explained_m(const SideView& view, Vec3d axis, double cosine) const noexcept {
   const Vec3d push_axis = cosine > -1 ? view.push_axis(axis) : Vec3d{};
@@ -58,7 +57,7 @@ double Explanation::excess_m(const SideView& view, double explained_m,
 }
 
 void Measuring::source(const ContactSource& source) noexcept {
-  if ((source.item & ContactSource::kEdge) != 0) {
+  if (source.is_edge()) {
     edge(source.side, source.item & ~ContactSource::kEdge);
   } else {
     vertex(source.side, source.item);
@@ -227,15 +226,26 @@ double Measuring::edge_bound(const ContactSource& edge, double region_lower) con
   return larger(0.5 * (ends - length) - view.odometer, region_lower);
 }
 
+/// A triangle of the other body that is near a vertex.
+std::uint32_t Measuring::hint_of(std::uint32_t side, std::uint32_t vertex) const noexcept {
+  const std::uint32_t before = memory_.sides[side].vertices[vertex].nearest;
+  if (before != image::kNone) return before;
+  const SideView& view = memory_.views[side];
+  const contact::Surface& target = view.side.target.surface;
+  const Vec3d x = view.side.to_target(contact::position(view.side.points, vertex));
+  return contact::cell_at(*target.image, vec_cast<float>((1 / target.scale) * x)).triangle;
+}
+
 void Measuring::vertex(std::uint32_t side, std::uint32_t index) noexcept {
   const SideView& view = memory_.views[side];
   VertexBound& at = memory_.sides[side].vertices[index];
   if (at.measured_tick == memory_.tick) return;
   at.measured_tick = memory_.tick;
   const contact::SignedDistance distance = contact::contacts_of_vertex(
-      view.side, *pace_, index, at.nearest, view.delta, *memory_.scratch);
+      view.side, *pace_, index, hint_of(side, index), view.delta, *memory_.scratch);
   at.nearest = distance.foot.triangle;
   at.lower_until = distance.value + view.odometer;
+  out_.nearest_m = smaller(out_.nearest_m, distance.value * view.unit_m);
   take({side, index});
 }
 
@@ -271,6 +281,7 @@ void Measuring::take(const ContactSource& source) noexcept {
     c.point_b_m = view.points_of_a ? foot : point;
     c.normal = view.points_of_a ? normal : -normal;
     c.distance_m = found.distance * view.unit_m;
+    if (source.is_edge()) out_.nearest_m = smaller(out_.nearest_m, c.distance_m);
     c.centre_m = point - (0.5 * c.distance_m) * normal;
     c.share = found.weight;
     c.pair = view.pair;

@@ -14,7 +14,8 @@ class Explanation {
   double share = 1;   ///< of it that explains: 1 for the force, less for the torque
   bool edges = true;  ///< edges are measured too
   double delta_m = 0;
-  double strongest_m = 0;  ///< of the contacts known: what fades is weaker the stronger it is
+  double strongest_m = 0;   ///< of the contacts known: what fades is weaker the stronger it is
+  double negligible_m = 0;  ///< what exceeds the push by no more may stay open
 
   std::uint32_t version = 0;  ///< changes with the push and the share
 
@@ -26,8 +27,6 @@ class Explanation {
   /// @param lower  bound of its points' signed distance, in units of the pair
   [[nodiscard]] double excess_m(const SideView& view, double explained_m,
                                 double lower) const noexcept;
-  /// By how much a contact may exceed the strongest.
-  [[nodiscard]] double stronger_m(double lower_m) const noexcept;
   [[nodiscard]] bool is_open(double excess) const noexcept;
   /// The largest strength of a contact of a point whose signed distance is no less.
   [[nodiscard]] double strength_of_distance(double lower_m) const noexcept;
@@ -70,6 +69,7 @@ class Measuring {
   std::uint32_t lower_vertices(const NearRegion& item, const Plane& plane,
                                const Sphere& sphere) noexcept;
   double edge_bound(const ContactSource& edge, double region_lower) const noexcept;
+  [[nodiscard]] std::uint32_t hint_of(std::uint32_t side, std::uint32_t vertex) const noexcept;
   void vertex(std::uint32_t side, std::uint32_t index) noexcept;
   void edge(std::uint32_t side, std::uint32_t index) noexcept;
   void take(const ContactSource& source) noexcept;

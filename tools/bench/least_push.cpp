@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time and accuracy of the least push on scenes of two detailed objects, beside the penalty.
+// Time and accuracy of the least push (docs/CONTACT.md) on scenes of two detailed objects.
 //
 //   bench_least_push [TICKS [SCENE...]]     scenes: jaws, tips, golf, socket, screw, joint
 //
 // The motions of bench_regions at a contact tolerance of 0.02 radii (gap), and the same pressed by
-// 0.9 tolerances more, half of one deep (pressed). A row (CSV) for each: exact ticks with all state
-// kept, median, 99 % and most in microseconds of the thread's processor clock, work units in the
-// mean, contacts measured; median of the penalty's exact tick; under a budget of time the error of
-// the force, root mean square by the largest force, and how many ticks a start from nothing needs
-// until the force stays within 5 % of the largest.
+// 0.9 tolerances more, half of one deep (pressed). A row (CSV) for each budget, exact first, then
+// budgets of time (of the thread's processor clock): median, 99 % and most of a tick in
+// microseconds, work units and contacts in the mean, ticks whose push is proved, the error of force
+// and torque, root mean square by the largest, and how many ticks a start from nothing needs until
+// the force stays within 5 % of the largest.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kDeltaRel = 0.02;
 constexpr double kPressed = 0.9;  // tolerances
-constexpr double kBudget_us = 400;
+constexpr double kBudgets_us[] = {200, 400, 800};
 constexpr std::size_t kStarted = 10;
 
 constexpr SceneName kScenes[] = {{"jaws", "jaw_lower", "jaw_upper", true},
@@ -46,8 +46,8 @@ Budget within_us(double budget_us) {
 
 struct Measured {
   std::vector<double> us, units, contacts;
-  std::vector<Vec3d> force_N;
-  int untruncated = 0;
+  std::vector<Vec3d> force_N, torque_Nm;
+  int proved = 0;
 };
 
 Measured run(Bench& bench, const std::vector<Pose>& poses, double budget_us) {
@@ -60,7 +60,8 @@ Measured run(Bench& bench, const std::vector<Pose>& poses, double budget_us) {
     out.units.push_back(static_cast<double>(r.queries));
     out.contacts.push_back(static_cast<double>(r.contacts.size()));
     out.force_N.push_back(r.wrench.force_N);
-    out.untruncated += r.certificate.truncated() ? 0 : 1;
+    out.torque_Nm.push_back(r.wrench.torque_Nm);
+    out.proved += r.certificate.truncated() ? 0 : 1;
   }
   return out;
 }
@@ -72,12 +73,12 @@ double largest(const std::vector<Vec3d>& forces) {
 }
 
 /// Ticks at one pose until the force stays within 5 % of the largest.
-int settling(Bench& bench, const Pose& pose, Vec3d truth, double peak) {
+int settling(Bench& bench, const Pose& pose, double budget_us, Vec3d truth, double peak) {
   constexpr int kMost = 100;
   int settled = 0;
   bench.forget();
   for (int i = 0; i < kMost; ++i) {
-    const Vec3d f = bench.tick_at(pose, within_us(kBudget_us)).wrench.force_N;
+    const Vec3d f = bench.tick_at(pose, within_us(budget_us)).wrench.force_N;
     if (norm(f - truth) > 0.05 * peak) settled = i + 1;
   }
   return settled;
@@ -93,18 +94,25 @@ std::vector<Pose> pressed(const std::vector<Pose>& poses, const std::vector<Vec3
   return deeper;
 }
 
-void print_row(const char* scene, const char* motion, Bench& bench, Bench& penalty,
-               const std::vector<Pose>& poses) {
-  const Measured exact = run(bench, poses, 0);
-  const Measured by_penalty = run(penalty, poses, 0);
-  const Measured budgeted = run(bench, poses, kBudget_us);
-  const double peak = largest(exact.force_N);
-  const int ticks = settling(bench, poses.back(), exact.force_N.back(), peak);
-  std::printf("%s,%s,%.1f,%.1f,%.1f,%.0f,%.0f,%.1f,%.4f,%d,%d,%.3f\n", scene, motion,
-              percentile(exact.us, 0.5), percentile(exact.us, 0.99), percentile(exact.us, 1),
-              mean(exact.units), mean(exact.contacts), percentile(by_penalty.us, 0.5),
-              nrmse(budgeted.force_N, exact.force_N, kStarted), budgeted.untruncated, ticks, peak);
-  std::fflush(stdout);
+/// @return the exact forces
+std::vector<Vec3d> print_rows(const char* scene, const char* motion, Bench& exact, Bench& bench,
+                              const std::vector<Pose>& poses) {
+  const Measured truth = run(exact, poses, 0);
+  const double peak = largest(truth.force_N);
+  const auto print = [&](double budget_us, const Measured& m, int ticks) {
+    std::printf("%s,%s,%.0f,%.1f,%.1f,%.1f,%.0f,%.1f,%d,%.4f,%.4f,%d,%.3f\n", scene, motion,
+                budget_us, percentile(m.us, 0.5), percentile(m.us, 0.99), percentile(m.us, 1),
+                mean(m.units), mean(m.contacts), m.proved,
+                nrmse(m.force_N, truth.force_N, kStarted),
+                nrmse(m.torque_Nm, truth.torque_Nm, kStarted), ticks, peak);
+    std::fflush(stdout);
+  };
+  print(0, truth, 0);
+  for (const double budget_us : kBudgets_us) {
+    const Measured m = run(bench, poses, budget_us);
+    print(budget_us, m, settling(bench, poses.back(), budget_us, truth.force_N.back(), peak));
+  }
+  return truth.force_N;
 }
 
 void measure(const SceneName& scene, int ticks) {
@@ -113,14 +121,13 @@ void measure(const SceneName& scene, int ticks) {
   const double delta = kDeltaRel * std::min(a.view.header->radius_m, b.view.header->radius_m);
   const std::vector<Pose> poses = motion(scene, a, b, delta, ticks);
   Settings settings{
-      .engine = EngineKind::regions, .delta_m = delta, .force_law = ForceLaw::penalty};
+      .engine = EngineKind::regions, .delta_m = delta, .force_law = ForceLaw::least_push};
   const Limits limits{.nodes = 1, .contacts = 1u << 18, .clusters = 1u << 18};
-  Bench penalty(a, b, settings);
-  settings.force_law = ForceLaw::least_push;
   Bench bench(a, b, settings, limits);
-  print_row(scene.name, "gap", bench, penalty, poses);
-  const std::vector<Vec3d> forces = run(bench, poses, 0).force_N;
-  print_row(scene.name, "pressed", bench, penalty, pressed(poses, forces, delta));
+  settings.exact = true;
+  Bench exact(a, b, settings, limits);
+  const std::vector<Vec3d> forces = print_rows(scene.name, "gap", exact, bench, poses);
+  print_rows(scene.name, "pressed", exact, bench, pressed(poses, forces, delta));
 }
 
 }  // namespace
@@ -129,8 +136,8 @@ void measure(const SceneName& scene, int ticks) {
 int main(int argc, char** argv) {
   const int ticks = argc > 1 ? std::atoi(argv[1]) : 100;
   std::printf(
-      "scene,motion,exact_us,exact_us_p99,exact_us_most,units,contacts,penalty_us,"
-      "budgeted_nrmse,untruncated,ticks_from_nothing,largest_N\n");
+      "scene,motion,budget_us,median_us,p99_us,most_us,units,contacts,proved,force_nrmse,"
+      "torque_nrmse,ticks_from_nothing,largest_N\n");
   for (const palpate::bench::SceneName& scene : palpate::bench::kScenes) {
     bool asked = argc < 3;
     for (int i = 2; i < argc; ++i) asked = asked || std::string(argv[i]) == scene.name;
