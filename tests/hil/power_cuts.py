@@ -31,9 +31,9 @@ def wait_for(process, log, pattern):
         time.sleep(0.02)
 
 
-def boot(command, log, cut_after):
+def boot(machine, log, cut_after, settings):
     """Runs until cut_after(process, log) returns, or to the end."""
-    with running(command, log) as process:
+    with running(log=log, **machine.go_on(**settings)) as process:
         if cut_after:
             cut_after(process, log)
         else:
@@ -41,14 +41,17 @@ def boot(command, log, cut_after):
     return text_of(log)
 
 
-def cut_power(cuts, folder, command_of):
-    """The texts of all starts, one more than cuts. @param command_of  QEMU's, of settings and more options"""
+def cut_power(cuts, folder, machine_of):
+    """The texts of all starts, one more than cuts. @param machine_of  of more options
+
+    The kernel is started once: each start goes on from where it has not looked at the disk yet."""
     disk = folder / "power_cuts.disk"
     disk.unlink(missing_ok=True)
     with open(disk, "wb") as file:
         file.truncate(32 << 20)
     subprocess.run(["mkfs.ext4", "-q", "-F", disk], check=True)
-    drive = ["-drive", f"file={disk},format=raw,if=virtio,cache=writethrough"]
+    machine = machine_of(["-drive", f"file={disk},format=raw,if=virtio,cache=writethrough"])
+    machine.start()
     moments = random.Random(1)
     texts = []
 
@@ -61,7 +64,8 @@ def cut_power(cuts, folder, command_of):
         # The image that was cut goes first, so that both slots are whole again before the next cut, which is the other one's.
         first, second = IMAGES if start == 0 or start % 2 == 1 else reversed(IMAGES)
         settings = {"scenario": "power_cut.sh", "BUS": "vhci", "FIRST": first, "SECOND": second, **({"LAST": 1} if last else {})}
-        texts.append(boot(command_of(settings, drive), folder / f"power_cuts.{start}.log", None if last else cut))
+        texts.append(boot(machine, folder / f"power_cuts.{start}.log", None if last else cut, settings))
+    machine.forget()
     disk.unlink()
     return texts
 
