@@ -100,8 +100,16 @@ def let_go_ms(log, name):
     return None if at is None or let_go is None else round(1000 * (let_go - at), 1)
 
 
-# A command lives for 20 ms at most; a period, and the shell's own time.
+# A command lives for 20 ms at most; then the device's period ends, and the sending and logging of both takes some time.
 LET_GO_MS = 22
+# From the shell's order on: until it has reached all threads of the program, which goes on commanding meanwhile.
+LET_GO_FROM_ORDER_MS = 30
+
+
+def judge_let_go(log, verdict, name):
+    after_us = log.number(f"{name}_after_us")
+    verdict.at_most("let go after the last command", None if after_us is None else after_us / 1000, LET_GO_MS, " ms")
+    verdict.at_most("after the order", let_go_ms(log, name), LET_GO_FROM_ORDER_MS, " ms")
 
 
 def judge_unplug(*ways, unseen=()):
@@ -111,7 +119,7 @@ def judge_unplug(*ways, unseen=()):
             verdict.silently(f"{way}: fault", "device_error" in (log.get(way, "faults") or []), True)
             verdict.equal("device", (log.get(way, "device_faults") or [None])[0], "unplugged")
             if way not in unseen:
-                verdict.at_most("let go after", let_go_ms(log, way), LET_GO_MS, " ms")
+                judge_let_go(log, verdict, way)
             verdict.silently(f"{way}: the next run", log.get(f"{way}_again", "state"), "rendering")
 
     return judge
@@ -133,7 +141,7 @@ def judge_host(log, verdict, real):
         verdict.at_most("end of a run: no force after the last command with one", log.number("ended_after_us"), ENDED_US, " us")
     for name in ("stopped", "killed"):
         if not real:
-            verdict.at_most(f"{name}: device let go after", let_go_ms(log, name), LET_GO_MS, " ms")
+            judge_let_go(log, verdict, name)
         verdict.equal(f"{name}: the next run", log.get(f"{name}_again", "state"), "rendering")
     verdict.silently("the stopped run's state", log.get("stopped", "state"), "fault")
     verdict.tell(f"the stopped run: {' '.join(log.get('stopped', 'faults') or [])}, exit status {log.status('stopped')}")

@@ -21,7 +21,7 @@ strike() {
 }
 [ "$BUS" = real ] || {
   : >"$scratch/sim.log"
-  sed 's/^nodes .*/nodes = 65536/' "$scene" >large.toml
+  sed 's/^nodes .*/nodes = 16384/' "$scene" >large.toml
   json ended palpate run large.toml --device "$device" --json --quiet --rate 1000 --seconds 0.4
   until_true grep -q "no force .* us after" "$scratch/sim.log"
   fact ended_after_us "$(sed -n 's/.*no force \([0-9]*\) us after.*/\1/p' "$scratch/sim.log" | head -n 1)"

@@ -33,9 +33,14 @@ until_true() {
   return 1
 }
 
-# mark, let_go NAME: now, and when the simulated device first had no force after that. Nothing is printed in between: it takes time.
+# mark, let_go NAME: now, and when the simulated device first had no force after that, by the time of day and since the last command
+# that it got. Nothing is printed in between: it takes time.
 mark() { marked=$EPOCHREALTIME; }
-let_go() { fact "$1_at" "$marked"; fact "$1_let_go" "$(awk -v at="$marked" '$1 > at && /no force/ { print $1; exit }' "$scratch/sim.log")"; }
+let_go() {
+  fact "$1_at" "$marked"
+  fact "$1_let_go" "$(awk -v at="$marked" '$1 > at && /no force/ { print $1; exit }' "$scratch/sim.log")"
+  fact "$1_after_us" "$(awk -v at="$marked" '$1 > at && /no force .* us after/ { print $5; exit }' "$scratch/sim.log")"
+}
 
 hogs=()
 hogs_on() {
