@@ -213,7 +213,13 @@ void OpenDevice::restart() {
   end_.set_health(holds_image ? kHealthy : kNoImage);
 }
 
-void OpenDevice::out(std::span<const std::byte> bytes) { end_.receive(bytes, now_ns_); }
+void OpenDevice::out(std::span<const std::byte> bytes) {
+  if (!end_.receive(bytes, now_ns_)) return;
+  const Command& command = end_.output(now_ns_);
+  const auto is_something = [](std::int32_t value) { return value != 0; };
+  const auto any = [&](const auto& v) { return std::any_of(v.begin(), v.end(), is_something); };
+  if (any(command.force_uN) || any(command.torque_uNm)) forced_ns_ = now_ns_;
+}
 
 std::size_t OpenDevice::in(std::span<std::byte> buffer) {
   if (!ready_) return 0;

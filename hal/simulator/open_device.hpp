@@ -62,6 +62,8 @@ class OpenDevice : public SimulatedDevice {
   /// Its periods so far, and those with a force.
   [[nodiscard]] std::uint64_t periods() const noexcept { return periods_; }
   [[nodiscard]] std::uint64_t periods_with_force() const noexcept { return periods_with_force_; }
+  /// How long ago the last command with a force came.
+  [[nodiscard]] std::uint64_t since_force_ns() const noexcept { return now_ns_ - forced_ns_; }
 
  private:
   void period(std::uint64_t now_ns);
@@ -82,6 +84,7 @@ class OpenDevice : public SimulatedDevice {
   std::uint64_t start_ns_ = 0;
   std::uint64_t next_ns_ = 0;  ///< 0: not begun
   std::uint64_t now_ns_ = 0;
+  std::uint64_t forced_ns_ = 0;
   std::uint64_t back_ns_ = 0;  ///< when a restart is over; 0: none is under way
   std::uint32_t times_left_ = 0;
   std::uint64_t periods_ = 0;

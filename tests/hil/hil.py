@@ -9,22 +9,14 @@ import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 
+from guest_machine import VIRTUAL_TIME, GuestMachine
 from judge import Log, Verdict
 from power_cuts import cut_power
 from processes import kill_all_when_stopped, running, wait_for_end
 from scenarios import SCENARIOS
 
 HERE = pathlib.Path(__file__).resolve().parent
-# One instruction is one nanosecond, and sleep takes no time: what else this machine does has no influence.
-VIRTUAL_TIME = ["-icount", "shift=0,sleep=off"]
 LIMIT_S = 600
-
-
-def qemu(options, settings, more=()):
-    words = " ".join(f"{name}={value}" for name, value in settings.items())
-    return ["qemu-system-x86_64", "-machine", "q35", "-accel", "tcg,thread=single,tb-size=256", "-cpu", "max", "-smp", "1", "-m", "512",
-            "-nographic", "-no-reboot", "-nodefaults", "-serial", "stdio", "-monitor", "none", *more,
-            "-kernel", str(options.kernel), "-initrd", str(options.initramfs), "-append", f"console=ttyS0 quiet panic=-1 {words}"]
 
 
 def on_this_machine(scenario, options):
@@ -37,7 +29,7 @@ def on_this_machine(scenario, options):
 
 
 def in_guest(scenario, options):
-    return {"command": qemu(options, {"scenario": scenario.script, **scenario.settings}, VIRTUAL_TIME)}
+    return options.machine.go_on(scenario=scenario.script, **scenario.settings)
 
 
 def perform_once(scenario, options, verdict):
@@ -53,7 +45,7 @@ def perform_once(scenario, options, verdict):
 
 
 def perform_with_cuts(scenario, options, verdict):
-    texts = cut_power(scenario.cuts, options.logs, lambda settings, more: qemu(options, settings, more))
+    texts = cut_power(options.cuts or scenario.cuts, options.logs, lambda more: GuestMachine(options.kernel, options.initramfs, options.logs, scenario.name, more))
     scenario.judge(texts, verdict, options.data)
     return options.logs / "power_cuts.*.log"
 
@@ -89,6 +81,7 @@ def main():
     parser.add_argument("--cpu", default="", metavar="N")
     for name in ("kernel", "initramfs", "programs", "data", "logs"):
         parser.add_argument(f"--{name}", type=lambda path: pathlib.Path(path).resolve())
+    parser.add_argument("--cuts", type=int, metavar="N")
     parser.add_argument("--jobs", type=int, default=1)
     options = parser.parse_args()
 
@@ -105,10 +98,14 @@ def main():
     options.logs.mkdir(parents=True, exist_ok=True)
     print(f"TAP version 13\n1..{len(chosen)}", flush=True)
     failed = 0
+    options.machine = GuestMachine(options.kernel, options.initramfs, options.logs, "virtual_time", VIRTUAL_TIME)
     reasons = {s.name: reason for s in chosen if (reason := reason_to_skip(s, options))}
+    # What takes longest begins first.
+    waiting = sorted((s for s in chosen if s.name not in reasons), key=lambda s: -s.cuts)
+    if not options.device and any(not s.cuts for s in waiting):
+        if problem := options.machine.start():
+            print(f"# {problem}: each scenario starts its own", flush=True)
     with ThreadPoolExecutor(1 if options.device else options.jobs) as pool:
-        # What takes longest begins first.
-        waiting = sorted((s for s in chosen if s.name not in reasons), key=lambda s: -s.cuts)
         futures = {s.name: pool.submit(perform, s, options) for s in waiting}
         for number, scenario in enumerate(chosen, 1):
             if scenario.name in reasons:
@@ -119,6 +116,7 @@ def main():
             if verdict.failures:
                 failed += 1
                 print(f"# log: {log}", flush=True)
+    options.machine.forget()
     return 1 if failed else 0
 
 

@@ -27,12 +27,16 @@ def kill_all_when_stopped():
 
 
 @contextmanager
-def running(command, log, **options):
-    """What it says is in the log. It is killed, with all that it has started, at the end of the block."""
+def running(command, log, told=None, stdin=subprocess.DEVNULL, **options):
+    """What it says is in the log. It is killed, with all that it has started, at the end of the block. @param told  what it reads first"""
     with open(log, "wb") as out:
-        process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT, start_new_session=True, **options)
+        stdin = stdin if told is None else subprocess.PIPE
+        process = subprocess.Popen(command, stdin=stdin, stdout=out, stderr=subprocess.STDOUT, start_new_session=True, **options)
         _running.add(process)
         try:
+            if told is not None:
+                process.stdin.write(told.encode())
+                process.stdin.flush()
             yield process
         finally:
             _kill(process)

@@ -43,6 +43,9 @@ TEST_F(HostChecks, tuned_host_passes_every_check) {
   put("sys/devices/system/cpu/isolated", "1");
   put("sys/devices/system/cpu/nohz_full", "1");
   put("proc/irq/default_smp_affinity", "1");
+  put("sys/devices/system/cpu/cpu1/topology/thread_siblings_list", "1");
+  put("sys/bus/pci/devices/0000:00:14.0/class", "0x0c0330");
+  put("sys/bus/pci/devices/0000:00:14.0/link/l1_aspm", "0");
   put("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance");
   put("sys/module/usbcore/parameters/autosuspend", "-1");
   put("dev/cpu_dma_latency", "");
@@ -103,7 +106,7 @@ TEST_F(HostChecks, capabilities_stand_in_for_limits) {
 
 TEST_F(HostChecks, empty_tree_gives_every_check_an_answer) {
   const auto checks = check_host({}, root);
-  EXPECT_EQ(checks.size(), 17u);
+  EXPECT_EQ(checks.size(), 20u);
   for (const HostCheck& c : checks) EXPECT_FALSE(c.found.empty()) << c.check;
 }
 

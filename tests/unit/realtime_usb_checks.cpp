@@ -64,7 +64,8 @@ TEST(Processors, are_read_from_lists_and_masks) {
 TEST_F(ProcessorChecks, host_with_one_processor_is_not_told_to_isolate_it) {
   put("sys/devices/system/cpu/online", "0");
   put("sys/devices/system/cpu/isolated", "");
-  for (const char* check : {"isolated_cpus", "tickless_cpus", "rcu_callbacks", "interrupts"}) {
+  for (const char* check :
+       {"isolated_cpus", "tickless_cpus", "rcu_callbacks", "interrupts", "hyper_threads"}) {
     EXPECT_TRUE(find(check).ok) << check;
   }
 }
@@ -94,6 +95,19 @@ TEST_F(ProcessorChecks, isolated_processor_with_ticks_callbacks_or_interrupts_is
   put("sys/devices/system/cpu/nohz_full", "");
   put("proc/cmdline", "quiet rcu_nocbs=2-3 splash");
   EXPECT_TRUE(find("rcu_callbacks").ok);
+}
+
+TEST_F(ProcessorChecks, isolated_processor_that_shares_its_core_is_named) {
+  put("sys/devices/system/cpu/online", "0-3");
+  put("sys/devices/system/cpu/isolated", "3");
+  put("sys/devices/system/cpu/cpu3/topology/thread_siblings_list", "1,3");
+  EXPECT_FALSE(find("hyper_threads").ok);
+  EXPECT_EQ(find("hyper_threads").found, "processors 1,3 are one core");
+  put("sys/devices/system/cpu/isolated", "1,3");
+  EXPECT_TRUE(find("hyper_threads").ok);
+  put("sys/devices/system/cpu/isolated", "3");
+  put("sys/devices/system/cpu/cpu3/topology/thread_siblings_list", "3");  // 1 is switched off
+  EXPECT_TRUE(find("hyper_threads").ok);
 }
 
 TEST_F(UsbChecks, threads_that_serve_usb_must_be_above_the_loop) {
@@ -165,6 +179,35 @@ TEST_F(UsbChecks, udev_rule_keeps_devices_awake_that_are_not_plugged_in_yet) {
   put("sys/module/usbcore/parameters/autosuspend", "2");
   put("etc/udev/rules.d/70-palpate.rules", "");
   EXPECT_TRUE(find("usb_autosuspend").ok);
+}
+
+TEST_F(UsbChecks, device_that_shares_a_hub_is_named) {
+  put_device("1-1", "on", "2");
+  put("sys/bus/usb/devices/1-2/bDeviceClass", "00");
+  EXPECT_TRUE(find("usb_port").ok) << find("usb_port").found;
+  put_device("2-1.4", "on", "2");
+  put("sys/bus/usb/devices/2-1/bDeviceClass", "09");
+  put("sys/bus/usb/devices/2-1.1/bDeviceClass", "09");
+  put("sys/bus/usb/devices/2-1.4:1.0/bInterfaceClass", "ff");
+  EXPECT_TRUE(find("usb_port").ok) << find("usb_port").found;
+  put("sys/bus/usb/devices/2-1.1.3/bDeviceClass", "00");
+  EXPECT_FALSE(find("usb_port").ok);
+  EXPECT_EQ(find("usb_port").found, "2-1.4 shares the hub 2-1 with 2-1.1.3");
+}
+
+TEST_F(UsbChecks, link_to_the_controller_that_may_sleep_is_named) {
+  const std::string controller = "sys/bus/pci/devices/0000:03:00.0/";
+  put("sys/bus/pci/devices/0000:01:00.0/class", "0x010802");  // a disk
+  put("sys/bus/pci/devices/0000:01:00.0/link/l1_aspm", "1");
+  put(controller + "class", "0x0c0330");
+  put(controller + "link/l0s_aspm", "0");
+  EXPECT_TRUE(find("usb_bus_power").ok) << find("usb_bus_power").found;
+  put(controller + "link/l1_aspm", "1");
+  const HostCheck check = find("usb_bus_power");
+  EXPECT_FALSE(check.ok);
+  EXPECT_EQ(check.found, "links that may sleep: 0000:03:00.0 by l1_aspm");
+  EXPECT_EQ(check.mend.rfind("echo 0 | sudo tee /" + controller + "link/l1_aspm (", 0), 0u)
+      << check.mend;
 }
 
 }  // namespace

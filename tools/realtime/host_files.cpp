@@ -43,4 +43,9 @@ std::set<int> processors_in_mask(const std::string& mask) {
   return out;
 }
 
+void append(std::string& list, const char* between, const std::string& text) {
+  if (!list.empty()) list += between;
+  list += text;
+}
+
 }  // namespace palpate::realtime

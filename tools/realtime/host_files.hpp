@@ -24,6 +24,9 @@ inline constexpr int kLoopPriority = 80;
 /// A mask of processors in hexadecimal, with commas between words: "ff,00000001".
 [[nodiscard]] std::set<int> processors_in_mask(const std::string& mask);
 
+/// Adds to a list in words.
+void append(std::string& list, const char* between, const std::string& text);
+
 [[nodiscard]] inline HostCheck make_check(std::string name, bool ok, std::string found,
                                           std::string wanted, std::string mend) {
   return {std::move(name), ok, std::move(found), std::move(wanted), ok ? "" : std::move(mend)};

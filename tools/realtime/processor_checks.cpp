@@ -87,6 +87,23 @@ HostCheck default_interrupts(const fs::path& root, const std::set<int>& isolated
                     "interrupts elsewhere than on an isolated processor (irqaffinity)", mend);
 }
 
+/// Two processors of one core share its units and caches.
+HostCheck hyper_threads(const fs::path& root, const std::set<int>& isolated) {
+  std::string found;
+  for (const int cpu : isolated) {
+    const fs::path core = root / kCpus / ("cpu" + std::to_string(cpu)) / "topology";
+    // Those that are switched off are not in it.
+    const std::string siblings = first_line(core / "thread_siblings_list").value_or("");
+    if (includes(isolated, processors_in(siblings))) continue;
+    append(found, "; ", "processors " + siblings + " are one core");
+  }
+  const bool ok = found.empty();
+  if (ok) found = isolated.empty() ? kNone : "no isolated processor shares its core";
+  return make_check("hyper_threads", ok, found, "a core that only the loop uses",
+                    "echo off | sudo tee /sys/devices/system/cpu/smt/control (until the next "
+                    "start; for good in the firmware's set-up, or by the kernel parameter nosmt)");
+}
+
 }  // namespace
 
 std::set<int> isolated_processors(const fs::path& root) {
@@ -98,7 +115,8 @@ std::vector<HostCheck> processor_checks(const fs::path& root) {
   const std::set<int> isolated = isolated_processors(root);
   const std::string mend = boot_advice(isolated.empty() ? online : isolated);
   return {isolated_cpus(root, online), tickless_cpus(root, isolated, mend),
-          rcu_callbacks(root, isolated, mend), default_interrupts(root, isolated, mend)};
+          rcu_callbacks(root, isolated, mend), default_interrupts(root, isolated, mend),
+          hyper_threads(root, isolated)};
 }
 
 }  // namespace palpate::realtime

@@ -9,27 +9,18 @@
 
 #include "tools/realtime/host_files.hpp"
 #include "tools/realtime/processor_checks.hpp"
+#include "tools/realtime/usb_device_checks.hpp"
 
 namespace palpate::realtime {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRule = "udev/rules.d/70-palpate.rules";
 constexpr std::array kHostControllers = {"xhci", "ehci", "ohci", "uhci", "dwc2", "dwc3", "musb"};
 
 bool names_a_host_controller(const std::string& text) {
   return std::any_of(kHostControllers.begin(), kHostControllers.end(),
                      [&](const char* name) { return text.find(name) != std::string::npos; });
-}
-
-void append(std::string& list, const char* between, const std::string& text) {
-  if (!list.empty()) list += between;
-  list += text;
-}
-
-bool rule_installed(const fs::path& root) {
-  return fs::exists(root / "etc" / kRule) || fs::exists(root / "usr/lib" / kRule);
 }
 
 bool usb_is_loaded(const fs::path& root) {
@@ -50,57 +41,6 @@ HostCheck usb_core(const fs::path& root) {
                                : "no USB in this kernel: the mock device only",
                     "USB in the kernel, for devices",
                     "sudo modprobe xhci-pci (or the driver of this host's USB controller)");
-}
-
-/// Of "70-palpate.rules": the open protocol, by an interface, and the Falcon.
-bool is_haptic(const fs::path& device) {
-  const auto is = [](const fs::path& file, const char* text) { return first_line(file) == text; };
-  if (is(device / "idVendor", "0403") && is(device / "idProduct", "cb48")) return true;
-  std::error_code unreadable;
-  for (const auto& entry : fs::directory_iterator(device, unreadable)) {
-    const fs::path& interface = entry.path();
-    if (is(interface / "bInterfaceClass", "ff") && is(interface / "bInterfaceSubClass", "50") &&
-        is(interface / "bInterfaceProtocol", "41")) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// Why a device may be put to sleep; empty where it is not.
-std::string sleep_of(const fs::path& device) {
-  const std::string control = first_line(device / "power/control").value_or("");
-  const std::string delay_s = first_line(device / "power/autosuspend").value_or("");
-  if (control == "on" || delay_s.rfind('-', 0) == 0) return "";
-  return device.filename().string() + " after " + (delay_s.empty() ? "?" : delay_s) +
-         " s (power/control is " + (control.empty() ? "unknown" : control) + ")";
-}
-
-HostCheck usb_autosuspend(const fs::path& root, const std::string& set_up) {
-  const auto check = [&](bool ok, const std::string& found) {
-    return make_check("usb_autosuspend", ok, found,
-                      "off for haptic devices: one that sleeps wakes up too late",
-                      set_up + ", then plug the device in again");
-  };
-  std::string awake, asleep;
-  std::error_code unreadable;
-  for (const auto& entry : fs::directory_iterator(root / "sys/bus/usb/devices", unreadable)) {
-    if (!is_haptic(entry.path())) continue;
-    const std::string sleep = sleep_of(entry.path());
-    if (sleep.empty()) {
-      append(awake, ", ", entry.path().filename().string());
-    } else {
-      append(asleep, ", ", sleep);
-    }
-  }
-  if (!asleep.empty()) return check(false, asleep);
-  if (!awake.empty()) return check(true, "off for " + awake);
-  const auto found = first_line(root / "sys/module/usbcore/parameters/autosuspend");
-  if (!found) return check(true, "USB is not loaded");
-  if (*found != "-1" && rule_installed(root)) {
-    return check(true, *found + " s, and off for haptic devices by the udev rule");
-  }
-  return check(*found == "-1", *found + " s");
 }
 
 struct Thread {
@@ -191,7 +131,7 @@ HostCheck usb_interrupts(const fs::path& root) {
 }
 
 HostCheck udev_rule(const fs::path& root, const std::string& set_up) {
-  const bool ok = rule_installed(root);
+  const bool ok = udev_rule_installed(root);
   return make_check("udev_rule", ok, ok ? "installed" : "not installed",
                     "70-palpate.rules, so that haptic devices may be used without root", set_up);
 }
@@ -199,8 +139,11 @@ HostCheck udev_rule(const fs::path& root, const std::string& set_up) {
 }  // namespace
 
 std::vector<HostCheck> usb_checks(const fs::path& root, const std::string& set_up) {
-  return {usb_core(root), usb_threads(root), usb_interrupts(root), usb_autosuspend(root, set_up),
-          udev_rule(root, set_up)};
+  std::vector<HostCheck> checks = {usb_core(root), usb_threads(root), usb_interrupts(root),
+                                   udev_rule(root, set_up)};
+  const auto more = usb_device_checks(root, set_up);
+  checks.insert(checks.end(), more.begin(), more.end());
+  return checks;
 }
 
 }  // namespace palpate::realtime

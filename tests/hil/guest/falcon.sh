@@ -6,6 +6,4 @@ device_up --device falcon
 head -c 8000 /dev/urandom >"$scratch/firmware"
 status without_firmware "${render[@]}" --seconds 0.5
 status upload "${render[@]}" --firmware "$scratch/firmware" --seconds 0.2
-hogs_on
-measure run --rate 1000 --seconds 1
-hogs_off
+measure_beside_hogs run --rate 1000 --seconds 1

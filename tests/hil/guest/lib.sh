@@ -33,9 +33,14 @@ until_true() {
   return 1
 }
 
-# mark NAME, let_go NAME: now, and when the simulated device first had no force after that
-mark() { marked=$EPOCHREALTIME; fact "$1_at" "$marked"; }
-let_go() { fact "$1_let_go" "$(awk -v at="$marked" '$1 > at && /no force/ { print $1; exit }' "$scratch/sim.log")"; }
+# mark, let_go NAME: now, and when the simulated device first had no force after that, by the time of day and since the last command
+# that it got. Nothing is printed in between: it takes time.
+mark() { marked=$EPOCHREALTIME; }
+let_go() {
+  fact "$1_at" "$marked"
+  fact "$1_let_go" "$(awk -v at="$marked" '$1 > at && /no force/ { print $1; exit }' "$scratch/sim.log")"
+  fact "$1_after_us" "$(awk -v at="$marked" '$1 > at && /no force .* us after/ { print $5; exit }' "$scratch/sim.log")"
+}
 
 hogs=()
 hogs_on() {
@@ -44,7 +49,23 @@ hogs_on() {
 }
 hogs_off() { kill "${hogs[@]}"; wait "${hogs[@]}" 2>/dev/null; hogs=(); }
 
+# Whether a process has a thread with real-time priority: policy is field 41.
+is_realtime() { cat /proc/"$1"/task/*/stat 2>/dev/null | awk '$41 == 1 { found = 1 } END { exit !found }'; }
+# measure_beside_hogs NAME OPTION...: hogs from the loop's first ticks on. What makes it ready is not measured.
+measure_beside_hogs() {
+  "${render[@]}" "${@:2}" >"$scratch/beside_hogs" 2>"$scratch/err" & local run=$!
+  until_true is_realtime $run
+  hogs_on
+  wait $run
+  local status=$?
+  hogs_off
+  echo "JSON $1 $status $(tr -d '\n' <"$scratch/beside_hogs")"
+  sed 's/^/  /' "$scratch/err"
+}
+
 sudo() { "$@"; }
+# Does all that doctor says.
+mend() { cd "$project" && eval "$(palpate doctor | sed -n 's/^ *mend: *//p')" >"$scratch/mended"; cd - >/dev/null; }
 # Does what doctor says about the threads that serve USB.
 raise_threads() { eval "$(palpate doctor | sed -n '/^mend  usb_threads/,/mend:/s/.*mend: *//p')"; }
 

@@ -4,7 +4,7 @@
 for module in virtio_pci virtio_blk crc32c_generic ext4; do modprobe "$module"; done
 until_true test -b /dev/vda
 busybox mount -t ext4 /dev/vda /mnt || exit 1
-device_up --flash /mnt/flash --slot-kib 128 --erase-ms 60 --rate 1000
+device_up --flash /mnt/flash --slot-kib 128 --erase-ms 150 --rate 1000
 for slot in 0 1; do
   rm -f "$scratch/back"
   dfu-util -d 1209:0001 -a $slot -U "$scratch/back" >"$scratch/said" 2>&1

@@ -9,7 +9,7 @@ lose() {
   "${render[@]}" --rate 1000 --seconds 1.2 >"$scratch/run" 2>"$scratch/run.err" & local run=$!
   until_true grep -q "active, force" "$scratch/sim.log"
   sleep 0.3
-  mark "$1"
+  mark
   "${@:2}"
   wait $run
   echo "JSON $1 $? $(tr -d '\n' <"$scratch/run")"
