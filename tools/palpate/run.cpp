@@ -290,7 +290,8 @@ void add_run(CLI::App& app) {
   command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
   command
       ->add_option("--device", options->device,
-                   "mock, mouse (with --view), usb[:SERIAL] or falcon[:SERIAL]")
+                   "mock, mouse (with --view), spacemouse, usb[:SERIAL], falcon[:SERIAL] or "
+                   "tcp:HOST[:PORT] (USB/IP, as palpate-sim serves it)")
       ->check(is_device())
       ->capture_default_str();
   command->add_option("--firmware", options->firmware,
