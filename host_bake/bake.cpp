@@ -161,15 +161,19 @@ std::vector<std::byte> pack_required(const Hierarchy& tree, const Metrics& metri
     const auto s0 = served_s0(tree, metrics, dropped + 1, partner_area);
     return s0 && static_cast<double>(*s0) <= options.s0_min;
   };
+  std::size_t least_bytes = 0;
   std::uint32_t dropped = 0;
   while (options.s0_min > 0 && next_serves(dropped)) ++dropped;
   for (;; ++dropped) {
     const auto s0 = served_s0(tree, metrics, dropped, partner_area);
     const bool serves = s0 && (options.s0_min == 0 || static_cast<double>(*s0) <= options.s0_min);
     if (!serves) {
-      throw InputRefused("no image of this object is small enough",
-                         "at most " + std::to_string(options.max_bytes) + " bytes wanted",
-                         "allow more bytes, a larger --s0-min, or a larger --partner-area");
+      throw InputRefused(
+          "no image of this object is small enough",
+          "at most " + std::to_string(options.max_bytes) + " bytes wanted" +
+              (least_bytes == 0 ? std::string()
+                                : ", the smallest that serves has " + std::to_string(least_bytes)),
+          "allow more bytes, a larger --s0-min, or a larger --partner-area");
     }
     facts.dropped_levels = dropped;
     facts.s0_min = *s0;
@@ -177,6 +181,7 @@ std::vector<std::byte> pack_required(const Hierarchy& tree, const Metrics& metri
     std::vector<std::byte> bytes =
         dropped == 0 ? pack(tree, metrics, facts) : pack_without(dropped, tree, metrics, facts);
     if (options.max_bytes == 0 || bytes.size() <= options.max_bytes) return bytes;
+    least_bytes = least_bytes == 0 ? bytes.size() : std::min(least_bytes, bytes.size());
   }
 }
 

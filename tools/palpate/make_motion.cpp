@@ -24,7 +24,9 @@ struct MakeMotionOptions {
 };
 
 std::string motion_table() {
-  std::string table = "Motions, and the scenes of config/scenes they are for:\n";
+  std::string table =
+      "Motions, for any scene of two bodies; each moves and presses as suits one of "
+      "config/scenes:\n";
   for (const Motion& motion : motions()) {
     std::string line = "  " + std::string(motion.name);
     line.resize(16, ' ');
