@@ -4,26 +4,18 @@
 // the tool until it is held off and shows the force, Shift turns it, the wheel takes it away, a gamepad
 // leads it too; the loop allocates nothing meanwhile, and the page says when the run has ended.
 import assert from 'node:assert/strict';
-import { execFileSync, spawn } from 'node:child_process';
+import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { Chromium } from './chromium.mjs';
+import { comesTrue, drag, findTool, loadPage, newtons, sleep, start, textOf } from './live_page.mjs';
 import { checkOverStage, readContact } from './over_stage.mjs';
 
 const [program, palpate, pictures] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), 'palpate-live-'));
 const at = (name) => join(folder, name);
 const command = (...args) => execFileSync(palpate, args, { stdio: ['ignore', 'ignore', 'inherit'] });
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
-
-async function comesTrue(what, condition, tries = 100) {
-  for (let i = 0; i < tries; ++i) {
-    if (await condition()) return;
-    await sleep(100);
-  }
-  assert.fail(what);
-}
 
 function makeScene() {
   command('make-model', 'golf_ball', '-o', at('ball.ply'), '--triangles', '20000');
@@ -47,39 +39,6 @@ image = "ball.palp"
 `);
 }
 
-/// The run, and where it says that its page is.
-function startRun() {
-  const child = spawn(palpate, ['run', at('scene.toml'), '--device', 'mouse', '--view', '--no-browser', '--json'], { stdio: ['ignore', 'pipe', 'pipe'] });
-  const run = { child, out: '', err: '' };
-  child.stdout.setEncoding('utf8').on('data', (text) => (run.out += text));
-  child.stderr.setEncoding('utf8').on('data', (text) => (run.err += text));
-  run.exited = new Promise((done) => child.on('exit', done));
-  return run;
-}
-
-const textOf = (browser, id) => browser.value(`document.getElementById('${id}').textContent`);
-const newtons = async (browser) => Number((await textOf(browser, 'wrench')).match(/^([\d.e-]+) N/)?.[1] ?? NaN);
-
-/// A place on the tool: where the page offers to grab it.
-async function findTool(browser) {
-  const box = await browser.value('(({ x, y, width, height }) => ({ x, y, width, height }))(document.getElementById("stage").getBoundingClientRect())');
-  for (let v = 0.1; v < 0.9; v += 0.04) {
-    const x = box.x + 0.5 * box.width;
-    const y = box.y + v * box.height;
-    await browser.mouse('mouseMoved', x, y);
-    if ((await browser.value('document.getElementById("stage").style.cursor')) === 'grab') return { x, y: y + 0.06 * box.height };
-  }
-  return assert.fail('the tool is nowhere');
-}
-
-async function drag(browser, from, to, options) {
-  await browser.mouse('mousePressed', from.x, from.y, { button: 'left', ...options });
-  for (let i = 1; i <= 10; ++i) {
-    await browser.mouse('mouseMoved', from.x + (i * (to.x - from.x)) / 10, from.y + (i * (to.y - from.y)) / 10, { button: 'left', ...options });
-    await sleep(30);
-  }
-}
-
 async function checkLooks(browser) {
   for (const scheme of ['light', 'dark']) {
     await browser.scheme(scheme);
@@ -100,12 +59,9 @@ let run;
 
 /// A run, its page, and nothing felt yet.
 async function begin() {
-  run = startRun();
-  await comesTrue('no address', () => /Live view: (\S+)\n/.test(run.err));
-  const address = run.err.match(/Live view: (\S+)\n/)[1];
+  run = start(palpate, 'run', at('scene.toml'), '--device', 'mouse', '--view', '--no-browser', '--json');
   browser.errors.length = 0;
-  await browser.load(address);
-  await comesTrue('the page does not go live', async () => (await textOf(browser, 'link')) === 'live');
+  await loadPage(browser, run);
   await comesTrue('nothing is rendered', async () => (await textOf(browser, 'state')) === 'rendering');
   assert.equal(await newtons(browser), 0);
   await browser.value('document.getElementById("fit").click()');
