@@ -5,6 +5,7 @@
 #include <cstring>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bake_support.hpp"
@@ -53,6 +54,23 @@ TEST(Bake, Convex_body_is_one_piece_with_neighbour_lists) {
   EXPECT_GT(image.view.pieces[0].hull_vertices, image::kAdjacencyAbove);
   EXPECT_EQ(image.view.neighbour_starts.size(), image.view.pieces[0].hull_vertices + 1u);
   EXPECT_EQ(image.view.virtual_faces.size(), 0u);
+}
+
+TEST(Bake, Progress_is_one_for_all_stages) {
+  const Mesh mesh = testing::sphere({0, 0, 0}, 1, 3);
+  std::set<std::string> stages;
+  double last = 0;
+  const Progress progress = [&](std::string_view stage, double done) {
+    stages.emplace(stage);
+    EXPECT_GE(done, last - 0.05) << stage;  // a stage may think again, but never begins anew
+    EXPECT_LE(done, 1) << stage;
+    last = std::max(last, done);
+  };
+  BakeReport report;
+  bake(mesh, check(mesh), {}, progress, report);
+  EXPECT_TRUE(stages.count("decompose") == 1 && stages.count("merge") == 1 &&
+              stages.count("pack") == 1);
+  EXPECT_GE(last, 0.8);
 }
 
 TEST(Bake, Header_tells_of_the_source) {

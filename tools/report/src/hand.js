@@ -20,7 +20,7 @@ export class Hand {
   #wheel_ms = -Infinity;
   #pending = false;
   #pushed = false;  // by a stick
-  #line = new Line(new BufferGeometry(), new LineBasicMaterial({ depthTest: false }));
+  #line = new Line(new BufferGeometry(), new LineBasicMaterial({ depthTest: false, transparent: true }));
 
   /// send({position, orientation} | null): called once a drawn frame at most; null: it has let go.
   constructor(stage, tool, centre, send) {
@@ -30,7 +30,7 @@ export class Hand {
     this.centre = new Vector3().fromArray(centre);
     this.#line.geometry.setAttribute('position', new BufferAttribute(new Float32Array(6), 3));
     this.#line.frustumCulled = false;
-    this.#line.renderOrder = 5;
+    this.#line.renderOrder = 7;
     this.#line.visible = false;
     stage.add(this.#line);
     const { host } = stage;

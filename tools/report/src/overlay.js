@@ -10,6 +10,7 @@ const kAxesSize_px = 84;
 const kAxis_px = 28;
 const kLongestScale_px = 130;
 const kReach_px = 14;
+const kEdge_px = 4;
 
 function svg(name, attributes = {}) {
   const element = document.createElementNS('http://www.w3.org/2000/svg', name);
@@ -58,7 +59,7 @@ export class Overlay {
     this.#drawScale(metresPerPixel);
     this.#force.hidden = force.at === null;
     this.#force.textContent = force.text;
-    if (force.at) this.#force.style.transform = `translate(${force.at.x + 8}px, ${force.at.y - 10}px)`;
+    if (force.at) this.#put(this.#force, force.at.x + 8, force.at.y - 10);
     this.#drawTip(contacts, pixelOf);
   }
 
@@ -107,7 +108,14 @@ export class Overlay {
     this.#tip.hidden = nearest === null;
     if (!nearest) return;
     this.#tip.textContent = contactTip(nearest.contact, this.#bodies).join('\n');
-    const left = Math.min(nearest.at.x + 14, this.#host.clientWidth - this.#tip.offsetWidth - 4);
-    this.#tip.style.transform = `translate(${Math.max(4, left)}px, ${Math.max(4, nearest.at.y + 14)}px)`;
+    this.#put(this.#tip, nearest.at.x + 14, nearest.at.y + 14);
+  }
+
+  /// There, or as near to it as it is whole.
+  #put(label, x, y) {
+    const within = (at, room) => Math.max(kEdge_px, Math.min(at, room - kEdge_px));
+    const left = within(x, this.#host.clientWidth - label.offsetWidth);
+    const top = within(y, this.#host.clientHeight - label.offsetHeight);
+    label.style.transform = `translate(${left}px, ${top}px)`;
   }
 }

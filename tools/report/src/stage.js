@@ -12,6 +12,8 @@ import { number } from './units.js';
 
 const kFelt = 0.01;  // of the largest: what carries less is not marked
 const kShown_N = 1e-3;
+// Transparent though they are not: what is see-through is drawn after all that is not.
+const kOnTop = { depthTest: false, transparent: true };
 
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -35,7 +37,7 @@ function disc() {
 }
 
 function dots(size_px, map, more) {
-  const material = new PointsMaterial({ size: size_px, sizeAttenuation: false, map, alphaTest: 0.5, depthTest: false, ...more });
+  const material = new PointsMaterial({ size: size_px, sizeAttenuation: false, map, alphaTest: 0.5, ...kOnTop, ...more });
   return new Points(new BufferGeometry(), material);
 }
 
@@ -87,7 +89,7 @@ export class Stage {
   #bodies = [];
   #contactPoints;
   #carrying;  // a rim about those that carry the force
-  #normals = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ depthTest: false }));
+  #normals = new LineSegments(new BufferGeometry(), new LineBasicMaterial(kOnTop));
   #arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 1, 0x888888);
   #pending = false;
   #contacts = [];
@@ -109,14 +111,14 @@ export class Stage {
     const round = disc();
     this.#carrying = dots(14, round);
     this.#contactPoints = dots(8, round, { vertexColors: true });
-    for (const part of [this.#normals, this.#carrying, this.#contactPoints]) {
-      part.renderOrder = 3;
+    [this.#normals, this.#carrying, this.#contactPoints].forEach((part, i) => {
+      part.renderOrder = 3 + i;
       part.frustumCulled = false;
-    }
+    });
     this.#scene.add(this.#normals, this.#carrying, this.#contactPoints, this.#arrow);
     for (const part of [this.#arrow.line, this.#arrow.cone]) {
-      part.material.depthTest = false;
-      part.renderOrder = 4;
+      Object.assign(part.material, kOnTop);
+      part.renderOrder = 6;
     }
     this.#camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.#camera, this.renderer.domElement);
@@ -162,7 +164,7 @@ export class Stage {
     const share = this.#force_N / Math.max(most_N, this.#force_N);
     this.#arrow.position.copy(this.#contactCentre());
     this.#arrow.setDirection(direction.normalize());
-    this.#arrow.setLength((0.15 + 0.65 * share) * this.size, 0.12 * this.size, 0.07 * this.size);
+    this.#arrow.setLength((0.12 + 0.38 * share) * this.size, 0.09 * this.size, 0.05 * this.size);
   }
 
   /// Once everything is in its place.
@@ -230,7 +232,7 @@ export class Stage {
 
   lookAtContacts() {
     if (this.#contacts.length === 0) return this.lookAtAll();
-    this.#lookFrom(this.#contactCentre(), 0.8 * this.size);
+    this.#lookFrom(this.#contactCentre(), 1.2 * this.size);
   }
 
   #addLights() {
