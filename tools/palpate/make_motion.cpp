@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/file_format.hpp"
 #include "tools/palpate/motion_placing.hpp"
 #include "tools/palpate/output_file.hpp"
 #include "tools/palpate/poses.hpp"
@@ -78,7 +79,9 @@ void add_make_motion(CLI::App& app) {
   command->add_option("NAME", options->name, "One of the motions below")->required();
   command->add_option("SCENE", options->scene, "scene file (TOML); its images must be there")
       ->required();
-  command->add_option("-o,--output", options->poses, "CSV file to write")->required();
+  command->add_option("-o,--output", options->poses, "CSV file to write")
+      ->required()
+      ->check(named_as(".csv"));
   command->add_option("--ticks", options->ticks, "How many")
       ->check(number_between(1, 1e7))
       ->capture_default_str();

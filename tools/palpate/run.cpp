@@ -18,6 +18,7 @@
 #include "tools/palpate/device_choice.hpp"
 #include "tools/palpate/error_line.hpp"
 #include "tools/palpate/fault_words.hpp"
+#include "tools/palpate/file_format.hpp"
 #include "tools/palpate/live_view.hpp"
 #include "tools/palpate/query_stack.hpp"
 #include "tools/palpate/run_device.hpp"
@@ -308,7 +309,8 @@ void add_run(CLI::App& app) {
       "show the run in a page of this machine while it goes on; --view=PORT: at this port");
   view->check(CLI::Range(0, 65535));
   command->add_flag("--no-browser", options->no_browser, "with --view: only say the address");
-  command->add_option("-o,--output", options->trace, "write a record of each tick to this file");
+  command->add_option("-o,--output", options->trace, "write a record of each tick to this file")
+      ->check(named_as(".trace"));
   command
       ->add_option("--priority", options->realtime.fifo_priority,
                    "SCHED_FIFO priority of the loop; 0: an ordinary thread")
