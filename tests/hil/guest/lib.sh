@@ -46,7 +46,7 @@ hogs_off() { kill "${hogs[@]}"; wait "${hogs[@]}" 2>/dev/null; hogs=(); }
 
 sudo() { "$@"; }
 # Does what doctor says about the threads that serve USB.
-raise_threads() { eval "$(palpate doctor | sed -n '/^mend  usb_threads/,/mend:/s/.*mend: *//p')"; }
+raise_threads() { eval "$(palpate doctor | sed -n '/^fix   usb_threads/,/fix:/s/.*fix: *//p')"; }
 
 is_there() { palpate devices --json | grep -q '"ready"'; }
 
