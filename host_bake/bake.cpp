@@ -270,6 +270,7 @@ std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const Ba
                                                : pack(tree, metrics, facts, regions);
   });
   timed(report, "validate", [&] { return require_valid(bytes), 0; });
+  if (progress) progress("pack", 1);
   report.peak_bytes = peak_resident_bytes();
   out_report = std::move(report);
   return bytes;
