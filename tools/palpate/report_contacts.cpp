@@ -28,8 +28,8 @@ class Picker {
     const std::size_t shown = std::min(limit_, felt.size());
     std::partial_sort(felt.begin(), felt.begin() + static_cast<std::ptrdiff_t>(shown), felt.end(),
                       [this](const Contact& a, const Contact& b) {
-                        return realtime::contact_force_N(a, settings_) >
-                               realtime::contact_force_N(b, settings_);
+                        return realtime::contact_force(a, settings_) >
+                               realtime::contact_force(b, settings_);
                       });
     felt.resize(shown);
     out_.contacts.insert(out_.contacts.end(), felt.begin(), felt.end());

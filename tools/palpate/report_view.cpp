@@ -143,7 +143,7 @@ Json contacts_json(const config::Scene& scene, const Images& images,
     points.push_back(c.point_a_m - origin_m);
     points.push_back(c.point_b_m - origin_m);
     distances.push_back(static_cast<float>(c.distance_m));
-    forces.push_back(static_cast<float>(realtime::contact_force_N(c, scene.settings)));
+    forces.push_back(static_cast<float>(realtime::contact_force(c, scene.settings)));
     add_side(side_a(scene, c), c.level_a);
     add_side(side_b(scene, c), c.level_b);
   }

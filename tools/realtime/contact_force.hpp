@@ -6,8 +6,8 @@
 
 namespace palpate::realtime {
 
-/// Along its normal, before limits; 0 where it carries nothing.
-inline double contact_force_N(const Contact& c, const Settings& s) noexcept {
+/// Newtons along its normal, before limits; 0 where it carries nothing.
+inline double contact_force(const Contact& c, const Settings& s) noexcept {
   return c.weight * s.stiffness_N_per_m * (s.delta_m - c.distance_m);
 }
 

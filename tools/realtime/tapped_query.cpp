@@ -39,7 +39,7 @@ void TappedQuery::show(const Pose& tool, const TickResult& result) noexcept {
     const Contact& from = result.contacts[i * found / shown];
     tick_.contacts[i] = {shown_vector(from.centre_m - origin_m_), shown_vector(from.normal),
                          static_cast<float>(from.distance_m),
-                         static_cast<float>(contact_force_N(from, settings_))};
+                         static_cast<float>(contact_force(from, settings_))};
   }
   out_.write(tick_);
 }
