@@ -130,7 +130,7 @@ async function driveByPad() {
   await sleep(300);
   assert.equal(await newtons(browser), 0);  // at rest it leads nowhere
   await browser.value('window.pad.axes[1] = 1');  // down
-  await comesTrue('the stick pulls nothing', async () => (await newtons(browser)) > 0.05);
+  await comesTrue('the stick pulls nothing', async () => (await newtons(browser)) > 0.05, 400);
   await browser.value('window.pad.axes[1] = 0');
   await sleep(500);
   const held = await newtons(browser);

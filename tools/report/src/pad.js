@@ -5,7 +5,7 @@ const kRest = 0.15;  // of a stick's way: nearer to its middle it counts as at r
 const kLetGo = 0;    // A, or the cross
 const kAway = 6;     // left trigger
 const kTowards = 7;  // right trigger
-const kLongest_s = 0.05;  // of a frame: a page that was away does not leap
+const kLongest_s = 0.1;  // of a frame: a page that was away does not leap
 
 /// Fine near the middle.
 function bent(value) {
