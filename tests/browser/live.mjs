@@ -91,7 +91,7 @@ async function driveByMouse() {
   await sleep(1500);
   const held = await newtons(browser);
   assert.ok(held > 0.05 && held <= 3, `${held} N`);
-  assert.match(await textOf(browser, 'contacts'), /overlap by/);
+  assert.match(await textOf(browser, 'contacts'), /^\d+; (overlap by|least distance) /);
   assert.match(await textOf(browser, 'arrow'), / N$/);
   assert.equal(await browser.value('document.getElementById("arrow").hidden'), false);
   assert.ok(!before.equals(await browser.picture('#stage')), 'the tool does not move');

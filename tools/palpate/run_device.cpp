@@ -20,9 +20,9 @@ namespace {
 constexpr double kMockReadingsPerTick = 2.0;
 /// No hand is faster.
 constexpr double kFastestHand_m_per_s = 1.0;
-/// How deep the mouse may press, in radii of the smallest body: what goes much deeper comes out on
-/// the other side, with any device.
-constexpr double kDeepestOfRadius = 0.2;
+/// How deep the mouse may press, in radii of the smallest body: what goes deeper than the thinnest
+/// part of a body, a gear's tooth for one, comes out on its other side, with any device.
+constexpr double kDeepestOfRadius = 0.05;
 /// The mouse's share of the contacts' force there.
 constexpr double kPullOfContact = 0.25;
 constexpr double kFastestTurn_rad_per_s = 6;
