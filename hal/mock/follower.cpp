@@ -24,7 +24,15 @@ Follower::Follower(const FollowLimits& limits, const Pose& start) noexcept
 
 void Follower::lead(const Lead& lead) noexcept {
   held_ = lead.held;
-  if (held_) to_ = {lead.to.position_m, normalised(lead.to.orientation)};
+  paced_ = lead.paced;
+  pace_ = lead.pace;
+  if (held_ && !paced_) to_ = {lead.to.position_m, normalised(lead.to.orientation)};
+}
+
+Twist Follower::way_left(double dt_s) const noexcept {
+  const double rate = 1 / std::max(limits_.settle_s, dt_s);
+  return {rate * (to_.position_m - at_.position_m),
+          rate * rotation_between(at_.orientation, to_.orientation)};
 }
 
 Target Follower::advance(const Pose& tool, double dt_s) noexcept {
@@ -32,12 +40,11 @@ Target Follower::advance(const Pose& tool, double dt_s) noexcept {
     at_ = tool;
     return {at_, {}};
   }
-  const double rate = 1 / std::max(limits_.settle_s, dt_s);
   Target target;
   Twist& twist = target.twist;
-  twist.linear_m_per_s = at_most(rate * (to_.position_m - at_.position_m), limits_.speed_m_per_s);
-  twist.angular_rad_per_s =
-      at_most(rate * rotation_between(at_.orientation, to_.orientation), limits_.turn_rad_per_s);
+  twist = paced_ ? pace_ : way_left(dt_s);
+  twist.linear_m_per_s = at_most(twist.linear_m_per_s, limits_.speed_m_per_s);
+  twist.angular_rad_per_s = at_most(twist.angular_rad_per_s, limits_.turn_rad_per_s);
   at_.position_m += dt_s * twist.linear_m_per_s;
   at_.orientation =
       normalised(rotation_from_vector(dt_s * twist.angular_rad_per_s) * at_.orientation);

@@ -12,7 +12,11 @@ namespace palpate::hal::mock {
 /// What a led hand is told.
 struct Lead {
   bool held = true;  ///< false: the hand lets go, and only damps
-  Pose to;           ///< finite, its quaternion not zero
+  Pose to{};         ///< finite, its quaternion not zero
+  /// Not to a place but on at a pace, for ever: `to` means nothing then. It stays near a tool that
+  /// is held up, so that turning round is felt at once.
+  bool paced = false;
+  Twist pace{};  ///< finite
 };
 
 /// All > 0.
@@ -37,8 +41,13 @@ class Follower {
   [[nodiscard]] Target advance(const Pose& tool, double dt_s) noexcept;
 
  private:
+  /// As fast as it is gone in settle_s.
+  [[nodiscard]] Twist way_left(double dt_s) const noexcept;
+
   FollowLimits limits_;
   bool held_ = true;
+  bool paced_ = false;
+  Twist pace_;
   Pose to_;
   Pose at_;
 };

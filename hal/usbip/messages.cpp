@@ -174,4 +174,15 @@ Setup decode_setup(const std::array<std::byte, 8>& bytes) noexcept {
           get<std::uint16_t>(b, 6)};
 }
 
+std::array<std::byte, 8> encode_setup(const Setup& setup) noexcept {
+  std::array<std::byte, 8> bytes{};
+  const std::span<std::byte> b(bytes);
+  put(b, 0, setup.request.type);
+  put(b, 1, setup.request.request);
+  put(b, 2, setup.request.value);
+  put(b, 4, setup.request.index);
+  put(b, 6, setup.length);
+  return bytes;
+}
+
 }  // namespace palpate::hal::usbip

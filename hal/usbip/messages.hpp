@@ -96,5 +96,6 @@ struct Setup {
   std::uint16_t length = 0;
 };
 [[nodiscard]] Setup decode_setup(const std::array<std::byte, 8>& bytes) noexcept;
+[[nodiscard]] std::array<std::byte, 8> encode_setup(const Setup& setup) noexcept;
 
 }  // namespace palpate::hal::usbip

@@ -135,7 +135,7 @@ export class Chromium {
   }
 
   async close() {
-    this.process.kill();
+    await Promise.race([this.send('Browser.close'), this.exited]);
     await this.exited;
     // Its children write for a moment longer.
     rmSync(this.profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 200 });

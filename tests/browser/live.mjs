@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The live view in headless Chromium: node live.mjs CHROMIUM PALPATE [FOLDER for pictures]
 // A ball over a ball, on the mouse: the page loads without an error and asks nobody else, a drag moves
-// the tool until it is held off and shows the force, Shift turns it, the wheel takes it away; the
-// loop allocates nothing meanwhile, and the page says when the run has ended.
+// the tool until it is held off and shows the force, Shift turns it, the wheel takes it away, a gamepad
+// leads it too; the loop allocates nothing meanwhile, and the page says when the run has ended.
 import assert from 'node:assert/strict';
-import { execFileSync, spawn } from 'node:child_process';
+import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { Chromium } from './chromium.mjs';
+import { comesTrue, drag, findTool, loadPage, newtons, sleep, start, textOf } from './live_page.mjs';
+import { checkOverStage, readContact } from './over_stage.mjs';
 
 const [program, palpate, pictures] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), 'palpate-live-'));
 const at = (name) => join(folder, name);
 const command = (...args) => execFileSync(palpate, args, { stdio: ['ignore', 'ignore', 'inherit'] });
-const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
-
-async function comesTrue(what, condition, tries = 100) {
-  for (let i = 0; i < tries; ++i) {
-    if (await condition()) return;
-    await sleep(100);
-  }
-  assert.fail(what);
-}
 
 function makeScene() {
   command('make-model', 'golf_ball', '-o', at('ball.ply'), '--triangles', '20000');
@@ -46,39 +39,6 @@ image = "ball.palp"
 `);
 }
 
-/// The run, and where it says that its page is.
-function startRun() {
-  const child = spawn(palpate, ['run', at('scene.toml'), '--device', 'mouse', '--view', '--no-browser', '--json'], { stdio: ['ignore', 'pipe', 'pipe'] });
-  const run = { child, out: '', err: '' };
-  child.stdout.setEncoding('utf8').on('data', (text) => (run.out += text));
-  child.stderr.setEncoding('utf8').on('data', (text) => (run.err += text));
-  run.exited = new Promise((done) => child.on('exit', done));
-  return run;
-}
-
-const textOf = (browser, id) => browser.value(`document.getElementById('${id}').textContent`);
-const newtons = async (browser) => Number((await textOf(browser, 'wrench')).match(/^([\d.e-]+) N/)?.[1] ?? NaN);
-
-/// A place on the tool: where the page offers to grab it.
-async function findTool(browser) {
-  const box = await browser.value('(({ x, y, width, height }) => ({ x, y, width, height }))(document.getElementById("stage").getBoundingClientRect())');
-  for (let v = 0.1; v < 0.9; v += 0.04) {
-    const x = box.x + 0.5 * box.width;
-    const y = box.y + v * box.height;
-    await browser.mouse('mouseMoved', x, y);
-    if ((await browser.value('document.getElementById("stage").style.cursor')) === 'grab') return { x, y: y + 0.06 * box.height };
-  }
-  return assert.fail('the tool is nowhere');
-}
-
-async function drag(browser, from, to, options) {
-  await browser.mouse('mousePressed', from.x, from.y, { button: 'left', ...options });
-  for (let i = 1; i <= 10; ++i) {
-    await browser.mouse('mouseMoved', from.x + (i * (to.x - from.x)) / 10, from.y + (i * (to.y - from.y)) / 10, { button: 'left', ...options });
-    await sleep(30);
-  }
-}
-
 async function checkLooks(browser) {
   for (const scheme of ['light', 'dark']) {
     await browser.scheme(scheme);
@@ -97,19 +57,33 @@ async function checkLooks(browser) {
 let browser;
 let run;
 
-/// From the first frame to the summary.
-async function drive() {
-  run = startRun();
-  await comesTrue('no address', () => /Live view: (\S+)\n/.test(run.err));
-  const address = run.err.match(/Live view: (\S+)\n/)[1];
+/// A run, its page, and nothing felt yet.
+async function begin() {
+  run = start(palpate, 'run', at('scene.toml'), '--device', 'mouse', '--view', '--no-browser', '--json');
   browser.errors.length = 0;
-  await browser.load(address);
-  await comesTrue('the page does not go live', async () => (await textOf(browser, 'link')) === 'live');
+  await loadPage(browser, run);
   await comesTrue('nothing is rendered', async () => (await textOf(browser, 'state')) === 'rendering');
   assert.equal(await newtons(browser), 0);
   await browser.value('document.getElementById("fit").click()');
   await browser.drawn();
+  await checkOverStage(browser);
+}
 
+/// The run ends as the page says, and has kept its promises.
+async function end() {
+  run.child.kill('SIGINT');
+  await comesTrue('the end is not said', async () => /has ended/.test(await textOf(browser, 'link')));
+  const status = await run.exited;
+  assert.ok(status === 0 || status === 5, `exit status ${status}: ${run.err}`);
+  const summary = JSON.parse(run.out);
+  assert.equal(summary.allocations, 0);
+  assert.equal(summary.page_faults, 0);
+  assert.ok(summary.force_N.max <= 3);
+  return summary;
+}
+
+async function driveByMouse() {
+  await begin();
   const before = await browser.picture('#stage');
   const tool = await findTool(browser);
   await drag(browser, tool, { x: tool.x + 5, y: tool.y + 120 });
@@ -117,7 +91,7 @@ async function drive() {
   await sleep(1500);
   const held = await newtons(browser);
   assert.ok(held > 0.05 && held <= 3, `${held} N`);
-  assert.match(await textOf(browser, 'contacts'), /overlap by/);
+  assert.match(await textOf(browser, 'contacts'), /^\d+; (overlap by|least distance) /);
   assert.match(await textOf(browser, 'arrow'), / N$/);
   assert.equal(await browser.value('document.getElementById("arrow").hidden'), false);
   assert.ok(!before.equals(await browser.picture('#stage')), 'the tool does not move');
@@ -139,20 +113,42 @@ async function drive() {
     await sleep(30);
   }
   await comesTrue('the wheel does not take it away', async () => (await newtons(browser)) === 0);
+  return end();
+}
 
-  run.child.kill('SIGINT');
-  await comesTrue('the end is not said', async () => /has ended/.test(await textOf(browser, 'link')));
-  const status = await run.exited;
-  assert.ok(status === 0 || status === 5, `exit status ${status}: ${run.err}`);
-  const summary = JSON.parse(run.out);
-  assert.equal(summary.allocations, 0);
-  assert.equal(summary.page_faults, 0);
-  assert.ok(summary.force_N.max <= 3);
-  return summary;
+/// Chromium has no gamepad here: one of this test's stands in for it.
+async function driveByPad() {
+  await begin();
+  const plug = (pads) => browser.value(`navigator.getGamepads = () => ${pads}; dispatchEvent(new Event('gamepadconnected'));`);
+  assert.match(await textOf(browser, 'pad'), /^Press one/);
+  await plug(`[null, { id: 'odd pad', connected: true, mapping: '', axes: [0, 1], buttons: [] }]`);
+  assert.match(await textOf(browser, 'pad'), /^Not used: odd pad/);
+  await browser.value(`window.pad = { id: 'test pad', connected: true, mapping: 'standard', axes: [0, 0, 0, 0],
+    buttons: Array.from({ length: 17 }, () => ({ value: 0, pressed: false })) };`);
+  await plug('[null, window.pad]');
+  assert.match(await textOf(browser, 'pad'), /^In use: test pad/);
+  await sleep(300);
+  assert.equal(await newtons(browser), 0);  // at rest it leads nowhere
+  await browser.value('window.pad.axes[1] = 1');  // down
+  await comesTrue('the stick pulls nothing', async () => (await newtons(browser)) > 0.05, 400);
+  await browser.value('window.pad.axes[1] = 0');
+  await sleep(500);
+  const held = await newtons(browser);
+  assert.ok(held > 0.02, `it does not stay: ${held} N`);
+  assert.match(await readContact(browser), /^(overlap|gap) .*, carries/);
+  const turned = await browser.picture('#stage');
+  await browser.value('window.pad.axes[2] = 1');
+  await sleep(500);
+  await browser.value('window.pad.axes[2] = 0; window.pad.buttons[0].pressed = true');
+  assert.ok(!turned.equals(await browser.picture('#stage')), 'the other stick does not turn the tool');
+  await comesTrue('its button does not let go', async () => (await newtons(browser)) < 0.2 * held);
+  await plug('[]');
+  assert.match(await textOf(browser, 'pad'), /^Press one/);
+  return end();
 }
 
 /// A machine that is too busy to hold the loop up ends the force with a fault: then it is no test.
-async function driveUndisturbed(tries) {
+async function undisturbed(drive, tries = 3) {
   for (let left = tries; ; --left) {
     let failure = null;
     let faults = [];
@@ -173,7 +169,8 @@ try {
   makeScene();
   browser = await Chromium.open(program);
   await browser.resize(1400, 860);
-  await driveUndisturbed(3);
+  await undisturbed(driveByMouse);
+  await undisturbed(driveByPad);
   const others = browser.requests.filter((request) => !/^(http|ws):\/\/127\.0\.0\.1:\d+\/[0-9a-f]{32}\/|^data:|^about:/.test(request));
   assert.deepEqual(others, []);
   assert.deepEqual(browser.errors, []);

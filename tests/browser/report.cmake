@@ -19,3 +19,14 @@ if(TARGET report_bundle AND PALPATE_CHROMIUM)
     COMMAND "${PALPATE_NODE}" "${PROJECT_SOURCE_DIR}/tests/browser/live.mjs" "${PALPATE_CHROMIUM}" "$<TARGET_FILE:palpate>")
   set_tests_properties(live_browser PROPERTIES LABELS "long;browser" TIMEOUT 600)
 endif()
+
+# The parts of the README, in millimetres.
+if(TARGET report_bundle AND PALPATE_CHROMIUM AND PALPATE_PYTHON)
+  add_test(NAME try_browser.meshes COMMAND "${PALPATE_PYTHON}" "${PROJECT_SOURCE_DIR}/examples/two_parts.py"
+    WORKING_DIRECTORY "${PROJECT_BINARY_DIR}")
+  add_test(NAME try_browser
+    COMMAND "${PALPATE_NODE}" "${PROJECT_SOURCE_DIR}/tests/browser/try.mjs" "${PALPATE_CHROMIUM}" "$<TARGET_FILE:palpate>"
+      "${PROJECT_BINARY_DIR}/pin.stl" "${PROJECT_BINARY_DIR}/plate.stl")
+  set_tests_properties(try_browser.meshes PROPERTIES LABELS "long;browser" FIXTURES_SETUP two_parts)
+  set_tests_properties(try_browser PROPERTIES LABELS "long;browser" TIMEOUT 600 FIXTURES_REQUIRED two_parts)
+endif()

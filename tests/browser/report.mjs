@@ -9,6 +9,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { Chromium } from './chromium.mjs';
+import { checkOverStage, readContact } from './over_stage.mjs';
 
 const [program, palpate, sweep] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), 'palpate-report-'));
@@ -124,6 +125,39 @@ async function checkZoom(browser) {
   assert.deepEqual(new Set(await ends()), before);
 }
 
+/// It plays in real time, or as much slower as one asks.
+async function checkPlay(browser) {
+  const frame = () => browser.value('document.getElementById("frame").valueAsNumber');
+  await browser.value('document.getElementById("frame").focus()');
+  await browser.press('Home');
+  await browser.value(`document.getElementById('speed').value = '0.05'; document.getElementById('play').click()`);
+  await new Promise((done) => setTimeout(done, 600));
+  await browser.value(`document.getElementById('play').click()`);
+  const shown = await frame();
+  const step_s = await browser.value('Number(document.querySelector("[data-to]").dataset.to)') / (await browser.value('Number(document.getElementById("frame").max)'));
+  assert.ok(shown * step_s > 0.01 && shown * step_s < 0.06, `after 0.6 s at a twentieth it shows ${shown * step_s} s`);
+  await browser.value(`document.getElementById('speed').value = '1'`);
+}
+
+/// What has one name has one colour, whichever plot it is in.
+async function checkColours(browser) {
+  const said = await browser.value('[...document.querySelectorAll("[data-colours]")].flatMap((plot) => plot.dataset.colours.split("; "))');
+  const colours = new Map();
+  for (const [name, colour] of said.filter((line) => line !== '').map((line) => line.split(/: (?=[^:]*$)/))) {
+    assert.equal(colours.get(name) ?? colour, colour, name);
+    colours.set(name, colour);
+  }
+  assert.ok(colours.size > 1);
+}
+
+/// The arrow says its force at the frame that is felt most, and a contact says what it is.
+async function checkStage(browser) {
+  await checkOverStage(browser);
+  assert.match(await browser.value('document.getElementById("arrow").textContent'), /^[\d.e-]+ N$/);
+  assert.equal(await browser.value('document.getElementById("arrow").hidden'), false);
+  assert.match(await readContact(browser), /^(overlap|gap) [^\n]*, carries [^\n]*\ntool at level \d+, table at level \d+$/);
+}
+
 /// A click on a title sorts by it, a second one the other way; what has no figure stays last.
 async function checkTable(browser) {
   const column = (title) =>
@@ -165,7 +199,10 @@ async function checkReport(browser, source, plots, sections) {
   const shown = await browser.value('[...document.querySelectorAll("section:not([hidden])")].map((section) => section.id)');
   assert.deepEqual(shown, sections, source);
   await checkPlots(browser, plots);
+  await checkStage(browser);
+  await checkColours(browser);
   await checkSlider(browser);
+  await checkPlay(browser);
   await checkZoom(browser);
   if (plots.includes('#trade .plot')) await checkTable(browser);
   await checkLooks(browser, source);

@@ -127,7 +127,8 @@ TEST(BakeCommand, What_is_wrong_is_refused_with_its_status) {
   expect_refused(bake({mesh, "-o", image, "--max-deviation", "0.2"}), 2, "--max-deviation");
   expect_refused(bake({mesh, "-o", image, "--max-deviation", "nan"}), 2, "--max-deviation");
   expect_refused(bake({mesh, "-o", image, "--support-area", "none"}), 2, "--support-area");
-  expect_refused(bake({mesh, "-o", image, "--max-bytes", "100"}), 3, "--s0-min");
+  expect_refused(bake({mesh, "-o", image, "--max-bytes", "100"}), 3,
+                 "the smallest that serves has");
   expect_refused(bake({folder.path() / "none.off", "-o", image}), 3, "none.off");
   expect_refused(bake({folder.write("bad.off", "OFF\n1 1 0\n"), "-o", image}), 3, "bad.off");
   EXPECT_FALSE(std::filesystem::exists(image));

@@ -74,6 +74,14 @@ TEST(FaultWords, kept_promises_are_not_praised_beside_a_fault) {
   EXPECT_NE(run_text(RunOutcome{}).find("Every promise was kept"), std::string::npos);
 }
 
+TEST(FaultWords, missed_deadlines_say_what_a_hand_feels_of_them) {
+  RunOutcome outcome;
+  outcome.report.missed = 3;
+  EXPECT_EQ(run_text(outcome).find("a knock"), std::string::npos);  // of no force nothing
+  outcome.report.force_N_max = 0.5;
+  EXPECT_NE(run_text(outcome).find("a knock"), std::string::npos);
+}
+
 TEST(FaultWords, json_has_the_devices_words) {
   const auto j = run_json(outcome_with(hal::kDeviceRefuses, 3));
   EXPECT_EQ(j["device_faults"], nlohmann::json({"refused"}));

@@ -7,6 +7,7 @@
 
 #include "../support/temporary_folder.hpp"
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/file_format.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -98,6 +99,17 @@ TEST_F(OutputFiles, Target_that_cannot_be_is_refused_and_leaves_nothing) {
     }
   }
   EXPECT_EQ(folder_.files(), 1u);
+}
+
+TEST(NamesOfFiles, of_another_format_are_wrong_and_say_the_right_one) {
+  EXPECT_EQ(wrong_name("part.ply", ".ply"), "");
+  EXPECT_EQ(wrong_name("PART.PLY", ".ply"), "");
+  EXPECT_EQ(wrong_name("part", ".palp"), "");
+  EXPECT_EQ(wrong_name("part.v2", ".palp"), "");
+  EXPECT_EQ(wrong_name("image.o", ".elf"), "");  // what linkers call it
+  for (const char* name : {"part.stl", "run.csv", "a.b/part.STL", "x.trace"}) {
+    EXPECT_NE(wrong_name(name, ".palp").find(".palp'"), std::string::npos) << name;
+  }
 }
 
 }  // namespace

@@ -55,6 +55,37 @@ TEST(Follower, waits_where_the_tool_is_held_up) {
   EXPECT_EQ(norm(target.twist.angular_rad_per_s), 0);
 }
 
+TEST(Follower, goes_on_at_a_pace_and_turns_round_at_once_where_it_is_held_up) {
+  Follower follower({.speed_m_per_s = 0.5, .ahead_m = 0.01}, {});
+  follower.lead({.paced = true, .pace = {{0.2, 0, 0}, {}}});
+  double tool_m = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Target target = follower.advance(at_x(tool_m), kStep_s);
+    ASSERT_NEAR(target.twist.linear_m_per_s.x, 0.2, 1e-12);
+    tool_m = target.pose.position_m.x;
+  }
+  EXPECT_NEAR(tool_m, 0.2, 1e-9);
+  for (int i = 0; i < 2000; ++i) {  // held up
+    EXPECT_LE(follower.advance(at_x(tool_m), kStep_s).pose.position_m.x, tool_m + 0.01 + 1e-12);
+  }
+  follower.lead({.paced = true, .pace = {{-0.2, 0, 0}, {}}});
+  Target target;
+  for (int i = 0; i < 110; ++i) target = follower.advance(at_x(tool_m), kStep_s);
+  EXPECT_LT(target.pose.position_m.x, tool_m);
+  follower.lead({.paced = true, .pace = {{100, 0, 0}, {}}});
+  EXPECT_LE(follower.advance(at_x(tool_m), kStep_s).twist.linear_m_per_s.x, 0.5 * (1 + 1e-9));
+}
+
+TEST(Follower, stays_where_a_pace_has_ended) {
+  Follower follower({}, {});
+  follower.lead({.paced = true, .pace = {{0.2, 0, 0}, {0, 0, 1}}});
+  Target target = follower.advance({}, 0.1);
+  follower.lead({.paced = true, .pace = {}});
+  for (int i = 0; i < 10; ++i) target = follower.advance(target.pose, kStep_s);
+  EXPECT_NEAR(target.pose.position_m.x, 0.02, 1e-12);
+  EXPECT_NEAR(vector_from_rotation(target.pose.orientation).z, 0.1, 1e-9);
+}
+
 TEST(Follower, pulls_nowhere_once_it_has_let_go) {
   Follower follower({}, {});
   follower.lead({true, at_x(1.0)});

@@ -127,7 +127,7 @@ TEST_F(LiveFeed, end_is_said) {
 TEST(TappedQuery, every_nth_answer_is_shown_and_none_changed) {
   realtime::LiveTap tap;
   realtime::test::QueryOf wall(realtime::test::wall(100));
-  realtime::TappedQuery tapped(wall, tap.ticks, 3, {0, 0, 1});
+  realtime::TappedQuery tapped(wall, tap.ticks, 3, {}, {0, 0, 1});
   TickResult result;
   realtime::LiveTick shown;
   const Pose inside{{0, 0, -0.5}, {}};
@@ -151,8 +151,12 @@ TEST(TappedQuery, of_very_many_contacts_some_are_shown_from_all_over) {
     out.contacts = contacts;
     return palpate::Status::ok;
   });
+  contacts[0].weight = 0.5;
+  Settings settings;
+  settings.stiffness_N_per_m = 100;
+  settings.delta_m = 0.01;
   realtime::LiveTap tap;
-  realtime::TappedQuery tapped(many, tap.ticks, 1, {});
+  realtime::TappedQuery tapped(many, tap.ticks, 1, settings, {});
   TickResult result;
   ASSERT_EQ(tapped.tick({}, {}, result), palpate::Status::ok);
   realtime::LiveTick shown;
@@ -160,6 +164,8 @@ TEST(TappedQuery, of_very_many_contacts_some_are_shown_from_all_over) {
   EXPECT_EQ(shown.found, 1000u);
   EXPECT_EQ(shown.shown, realtime::kMostLiveContacts);
   EXPECT_EQ(shown.contacts[0].distance_m, 0);
+  EXPECT_FLOAT_EQ(shown.contacts[0].force_N, 0.5f);
+  EXPECT_EQ(shown.contacts[1].force_N, 0);
   EXPECT_GT(shown.contacts[realtime::kMostLiveContacts - 1].distance_m, 980);
 }
 

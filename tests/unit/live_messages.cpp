@@ -89,11 +89,12 @@ TEST(Frame, has_its_head_samples_and_contacts) {
   contacts.shown = 2;
   contacts.found = 5;
   contacts.contacts[1].distance_m = -0.25f;
+  contacts.contacts[1].force_N = 1.5f;
   std::vector<Sample> samples(3);
   samples[2].t_s = 1.5;
   std::vector<std::byte> out(10);
   encode_frame(status, samples, contacts, {1, 2, 3}, out);
-  ASSERT_EQ(out.size(), 8 * kHeadNumbers + 3 * 8 * 4 + 2 * 7 * 4);
+  ASSERT_EQ(out.size(), 8 * kHeadNumbers + 3 * 8 * 4 + 2 * 8 * 4);
   std::vector<double> head(kHeadNumbers);
   std::memcpy(head.data(), out.data(), 8 * kHeadNumbers);
   EXPECT_EQ(head[0], 3);
@@ -105,7 +106,8 @@ TEST(Frame, has_its_head_samples_and_contacts) {
   std::vector<float> rest((out.size() - 8 * kHeadNumbers) / 4);
   std::memcpy(rest.data(), out.data() + 8 * kHeadNumbers, 4 * rest.size());
   EXPECT_EQ(rest[16], -0.5f);
-  EXPECT_EQ(rest.back(), -0.25f);
+  EXPECT_EQ(rest[rest.size() - 2], -0.25f);
+  EXPECT_EQ(rest.back(), 1.5f);
 }
 
 TEST(Address, token_is_long_and_another_each_time) {

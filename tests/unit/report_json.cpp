@@ -207,6 +207,7 @@ TEST_F(ReportView, bodies_share_an_image_and_have_tracks_of_their_own) {
   const std::size_t shown = floats(contacts.at("distances")).size();
   ASSERT_GT(shown, 0u);
   EXPECT_EQ(floats(contacts.at("points")).size(), 6 * shown);
+  EXPECT_EQ(floats(contacts.at("forces_N")).size(), shown);
   EXPECT_EQ(floats(contacts.at("sides")).size(), 6 * shown);
   EXPECT_EQ(floats(contacts.at("starts")).size(), 7u);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// palpate-sim as a process, and the usbip tool of the Linux kernel as its client.
+// palpate-sim as a process; its clients are the usbip tool of the Linux kernel, and `palpate run`.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
@@ -7,9 +7,11 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "../support/cube_scene.hpp"
 #include "../support/process.hpp"
 #include "../support/temporary_folder.hpp"
 
@@ -34,13 +36,14 @@ class Simulator {
     ::close(ends[1]);
     char letter = 0;
     while (::read(ends[0], &letter, 1) == 1 && letter != '\n') greeting_ += letter;
-    ::close(ends[0]);
+    said_ = ends[0];  // open: it goes on saying what happens
   }
   ~Simulator() {
     ::kill(process_, SIGTERM);
     int status = -1;
     ::waitpid(process_, &status, 0);
     EXPECT_EQ(status, 0);
+    ::close(said_);
   }
   Simulator(const Simulator&) = delete;
   Simulator& operator=(const Simulator&) = delete;
@@ -56,6 +59,7 @@ class Simulator {
 
  private:
   pid_t process_ = -1;
+  int said_ = -1;
   std::string greeting_;
 };
 
@@ -76,6 +80,26 @@ TEST(PalpateSim, usbip_lists_a_device_of_the_open_protocol_with_both_interfaces)
 TEST(PalpateSim, usbip_lists_a_falcon) {
   const Simulator simulator({"--device", "falcon"});
   EXPECT_NE(list(simulator).out.find("0403:cb48"), std::string::npos);
+}
+
+TEST(PalpateSim, run_takes_the_device_without_rights_and_leaves_it_for_the_next) {
+  const test::TemporaryFolder folder;
+  folder.write("cube.palp", test::cube_image());
+  const std::string scene = folder.write("scene.toml", test::cube_loop_scene());
+  const Simulator simulator({"--scene", scene});
+  for (int visit = 0; visit < 2; ++visit) {
+    const test::Outcome outcome =
+        test::run({PALPATE_EXECUTABLE, "run", scene, "--device",
+                   "tcp:127.0.0.1:" + simulator.port(), "--seconds", "1", "--json"});
+    ASSERT_TRUE(outcome.status == 0 || outcome.status == 4 || outcome.status == 5) << outcome.err;
+    ASSERT_FALSE(outcome.out.empty()) << outcome.err;
+    const auto j = nlohmann::json::parse(outcome.out);
+    if (!j["faults"].empty()) GTEST_SKIP() << "the machine is too busy to hold the loop up";
+    EXPECT_GT(j["ticks"], 100);
+#ifndef PALPATE_SANITIZED
+    EXPECT_EQ(j["allocations"], 0);
+#endif
+  }
 }
 
 TEST(PalpateSim, wrong_options_are_a_usage_error_in_one_line) {

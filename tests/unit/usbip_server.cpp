@@ -17,6 +17,7 @@
 #include "hal/simulator/flash_model.hpp"
 #include "hal/simulator/open_device.hpp"
 #include "hal/transport/streamed_device.hpp"
+#include "hal/usbip/client.hpp"
 #include "hal/usbip/vhci.hpp"
 
 namespace palpate::hal::usbip {
@@ -25,7 +26,6 @@ namespace {
 using simulator::OpenDevice;
 using simulator::OpenDeviceOptions;
 using test::kMs;
-using test::UsbipTransport;
 
 /// The longest life that the protocol knows: what a shared machine may stand still for.
 OpenDeviceOptions patient() {
@@ -53,13 +53,15 @@ class Running {
   Running(Running&&) = delete;
   Running& operator=(Running&&) = delete;
 
-  [[nodiscard]] std::unique_ptr<UsbipTransport> attach(std::uint8_t interface = 0) {
-    auto transport = std::make_unique<UsbipTransport>(test::connect_to(server_.port()), interface);
+  [[nodiscard]] std::unique_ptr<ClientTransport> attach(std::uint8_t interface = 0) {
+    auto transport = std::make_unique<ClientTransport>(test::connect_to(server_.port()),
+                                                       ClientInterface{interface});
     // Whoever had the device before may just be leaving.
     for (int i = 0; i < 100; ++i) {
       if (transport->import()) return transport;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      transport = std::make_unique<UsbipTransport>(test::connect_to(server_.port()), interface);
+      transport = std::make_unique<ClientTransport>(test::connect_to(server_.port()),
+                                                    ClientInterface{interface});
     }
     ADD_FAILURE() << "the server does not give the device";
     return transport;
@@ -142,7 +144,7 @@ TEST(UsbipServer, owner_that_does_not_ask_has_the_device) {
   std::thread thread([&] {
     while (!stop) server.step(clock.now_ns() + kMs);
   });
-  UsbipTransport transport(ends[1]);
+  ClientTransport transport(ends[1]);
   protocol::Capabilities capabilities;
   EXPECT_FALSE(
       protocol::read_descriptor(transport, protocol::PacketType::capabilities, 0, capabilities));
@@ -214,7 +216,7 @@ class KilledHost : public testing::TestWithParam<bool> {
     if (child_ == 0) be_the_host();
   }
   [[noreturn]] void be_the_host() {
-    auto transport = std::make_unique<UsbipTransport>(ends_[1]);
+    auto transport = std::make_unique<ClientTransport>(ends_[1]);
     if (!transport->import()) ::_exit(1);
     MonotonicClock clock;
     StreamedDevice device(std::move(transport), std::make_unique<protocol::HostDriver>(), clock,

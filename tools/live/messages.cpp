@@ -110,6 +110,7 @@ void encode_frame(const Status& status, std::span<const Sample> samples,
     for (const float value : c.centre_m) append(out, value);
     for (const float value : c.normal) append(out, value);
     append(out, c.distance_m);
+    append(out, c.force_N);
   }
 }
 

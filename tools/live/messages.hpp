@@ -53,7 +53,7 @@ struct Status {
   double tick_p50_us = 0, tick_p99_us = 0, tick_max_us = 0, late_p99_us = 0;
 };
 
-/// Program to page: kHeadNumbers f64, then 8 f32 a sample, then 7 f32 a contact. Replaces `out`.
+/// Program to page: kHeadNumbers f64, then 8 f32 a sample, then 8 f32 a contact. Replaces `out`.
 /// @param samples   times are written as seconds before the newest tick
 /// @param origin_m  of the view
 void encode_frame(const Status& status, std::span<const Sample> samples,

@@ -17,6 +17,7 @@
 #include "host_bake/simplify/reduce.hpp"
 #include "tools/palpate/bake_mesh.hpp"
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/file_format.hpp"
 #include "tools/palpate/image_json.hpp"
 #include "tools/palpate/image_text.hpp"
 #include "tools/palpate/mesh_size.hpp"
@@ -171,7 +172,9 @@ void add_bake(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("bake", "Make an image from a mesh");
   command->add_option("MESH", options->mesh, "OBJ, PLY, STL or OFF file")->required();
-  command->add_option("-o,--output", options->image, "Image file")->required();
+  command->add_option("-o,--output", options->image, "Image file")
+      ->required()
+      ->check(named_as(".palp"));
   command
       ->add_option("--delta", options->bake.delta_rel,
                    "Contact tolerance that the support areas are made for, relative to the radius")
@@ -200,7 +203,8 @@ void add_bake(CLI::App& app) {
   command->add_option("--threads", options->bake.threads, "Threads to use, 0: all cores")
       ->check(CLI::Range(0u, kMaxThreads))
       ->capture_default_str();
-  command->add_option("--report", options->report, "Write figures of image and bake as JSON");
+  command->add_option("--report", options->report, "Write figures of image and bake as JSON")
+      ->check(named_as(".json"));
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->callback([options] { bake(*options); });
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/palpate/device_choice.hpp"
 
+#include <charconv>
 #include <fstream>
+#include <optional>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "hal/falcon/bring_up.hpp"
 #include "hal/falcon/driver.hpp"
 #include "hal/transport/streamed_device.hpp"
+#include "hal/usbip/client.hpp"
 #include "tools/palpate/command.hpp"
 
 namespace palpate::cli {
@@ -28,6 +31,36 @@ std::vector<std::byte> read_firmware(const std::filesystem::path& file) {
   return bytes;
 }
 
+/// HOST or HOST:PORT; absent where it is neither. An address of IPv6 has its colons in brackets.
+std::optional<std::pair<std::string, std::uint16_t>> tcp_address(const std::string& text) {
+  const bool bracketed = text.starts_with('[');
+  const std::size_t host_end = bracketed ? text.find(']') : text.find(':');
+  const std::string host = bracketed ? text.substr(1, host_end - 1) : text.substr(0, host_end);
+  const std::string rest =
+      host_end == std::string::npos ? "" : text.substr(host_end + (bracketed ? 1 : 0));
+  if (host.empty() || (bracketed && host_end == std::string::npos)) return std::nullopt;
+  if (rest.empty()) return std::pair(host, hal::usbip::kTcpPort);
+  std::uint16_t port = 0;
+  const char* const end = rest.data() + rest.size();
+  const auto [stopped, error] = std::from_chars(rest.data() + 1, end, port);
+  if (rest.front() != ':' || error != std::errc() || stopped != end || port == 0) {
+    return std::nullopt;
+  }
+  return std::pair(host, port);
+}
+
+bool is_tcp(const std::string& text) {
+  const DeviceChoice choice = parse_device(text);
+  return choice.kind == "tcp" && tcp_address(choice.serial);
+}
+
+std::unique_ptr<hal::Transport> open_tcp(const std::string& device) {
+  const auto [host, port] = tcp_address(parse_device(device).serial).value();
+  auto opened = hal::usbip::open_device(host, port);
+  if (const auto* problem = std::get_if<hal::DeviceProblem>(&opened)) fail(device, *problem);
+  return std::move(std::get<std::unique_ptr<hal::Transport>>(opened));
+}
+
 }  // namespace
 
 DeviceChoice parse_device(const std::string& text) {
@@ -39,8 +72,8 @@ DeviceChoice parse_device(const std::string& text) {
 CLI::Validator is_device() {
   return {[](const std::string& text) -> std::string {
             const std::string kind = parse_device(text).kind;
-            const bool known =
-                text == "mock" || text == "mouse" || kind == "usb" || kind == "falcon";
+            const bool known = text == "mock" || text == "mouse" || text == "spacemouse" ||
+                               kind == "usb" || kind == "falcon" || is_tcp(text);
             return known ? "" : "unknown device '" + text + "'";
           },
           "DEVICE"};
@@ -71,7 +104,8 @@ std::unique_ptr<hal::Device> make_usb_device(const std::string& device,
   }
   hal::StreamOptions options;
   options.fifo_priority = fifo_priority;
-  return std::make_unique<hal::StreamedDevice>(open_usb(device, kind), std::move(driver), clock,
+  auto transport = parse_device(device).kind == "tcp" ? open_tcp(device) : open_usb(device, kind);
+  return std::make_unique<hal::StreamedDevice>(std::move(transport), std::move(driver), clock,
                                                options);
 }
 

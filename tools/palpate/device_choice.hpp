@@ -17,13 +17,13 @@
 namespace palpate::cli {
 
 struct DeviceChoice {
-  std::string kind;    ///< "mock", "mouse", "usb" or "falcon"
-  std::string serial;  ///< empty: the only one there is
+  std::string kind;    ///< "mock", "mouse", "spacemouse", "usb", "falcon" or "tcp"
+  std::string serial;  ///< empty: the only one there is; of tcp HOST[:PORT]
 };
 
 [[nodiscard]] DeviceChoice parse_device(const std::string& text);
 
-/// For options: mock, mouse, usb[:SERIAL] or falcon[:SERIAL].
+/// For options: mock, mouse, spacemouse, usb[:SERIAL], falcon[:SERIAL] or tcp:HOST[:PORT].
 [[nodiscard]] CLI::Validator is_device();
 
 /// Throws Failure(kDevice) for what a device could not do. @param device  as the user named it
@@ -33,8 +33,8 @@ struct DeviceChoice {
 [[nodiscard]] std::unique_ptr<hal::Transport> open_usb(const std::string& device,
                                                        hal::usb::Kind kind);
 
-/// A device on USB, not yet open. Throws Failure: kDevice where there is none, kRefused where the
-/// firmware file cannot be read.
+/// A device on USB, of this machine or by USB/IP, not yet open. Throws Failure: kDevice where there
+/// is none, kRefused where the firmware file cannot be read.
 /// @param firmware  the maker's file for a Falcon; empty: none  @param clock  must outlive it
 /// @param images  of the scene, see hal::protocol::HostDriver
 /// @param fifo_priority  of its I/O thread; 0: an ordinary thread

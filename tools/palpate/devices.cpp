@@ -20,7 +20,7 @@ void print(const hal::usb::FoundDevice& device) {
   std::cout << hal::usb::name(device.kind) << serial << "  on USB " << device.path << ", "
             << state_of(device) << "\n";
   if (device.ready) return;
-  std::cout << "    problem: " << device.problem << "\n    mend:    " << device.mend << "\n";
+  std::cout << "    problem: " << device.problem << "\n    fix:     " << device.mend << "\n";
 }
 
 nlohmann::json to_json(const hal::usb::FoundDevice& device) {

@@ -12,9 +12,9 @@ namespace palpate::cli {
 namespace {
 
 void print(const realtime::HostCheck& check) {
-  std::cout << (check.ok ? "ok    " : "mend  ") << check.check << ": " << check.found << "\n";
+  std::cout << (check.ok ? "ok    " : "fix   ") << check.check << ": " << check.found << "\n";
   if (check.ok) return;
-  std::cout << "        wanted: " << check.wanted << "\n        mend:   " << check.mend << "\n";
+  std::cout << "        wanted: " << check.wanted << "\n        fix:    " << check.mend << "\n";
 }
 
 nlohmann::json to_json(const realtime::HostCheck& check) {

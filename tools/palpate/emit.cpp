@@ -8,6 +8,7 @@
 
 #include "hal/flash/dfu_suffix.hpp"
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/file_format.hpp"
 #include "tools/palpate/image_file.hpp"
 #include "tools/palpate/signing.hpp"
 
@@ -61,6 +62,12 @@ void check_names(const EmitOptions& options) {
     throw Failure(kUsage, "not a section name", "--section " + options.section,
                   "use letters, digits, and any of . _ $ -");
   }
+}
+
+void check_file(const EmitOptions& options) {
+  const std::string file = options.out.string();
+  const std::string wrong = wrong_name(file, "." + options.form);
+  if (!wrong.empty()) throw CLI::ValidationError("--output", wrong);
 }
 
 void check_address(std::uint32_t address, std::size_t size) {
@@ -141,6 +148,7 @@ void add_emit(CLI::App& app) {
   add_sign_options(*command, options->sign, "dfu: ");
   command->callback([command, options] {
     check_options(*command, options->form);
+    check_file(*options);
     emit(*options);
   });
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tools/palpate/command.hpp"
+#include "tools/palpate/file_format.hpp"
 #include "tools/palpate/motion_placing.hpp"
 #include "tools/palpate/output_file.hpp"
 #include "tools/palpate/poses.hpp"
@@ -24,7 +25,9 @@ struct MakeMotionOptions {
 };
 
 std::string motion_table() {
-  std::string table = "Motions, and the scenes of config/scenes they are for:\n";
+  std::string table =
+      "Motions, for any scene of two bodies; each moves and presses as suits one of "
+      "config/scenes:\n";
   for (const Motion& motion : motions()) {
     std::string line = "  " + std::string(motion.name);
     line.resize(16, ' ');
@@ -76,7 +79,9 @@ void add_make_motion(CLI::App& app) {
   command->add_option("NAME", options->name, "One of the motions below")->required();
   command->add_option("SCENE", options->scene, "scene file (TOML); its images must be there")
       ->required();
-  command->add_option("-o,--output", options->poses, "CSV file to write")->required();
+  command->add_option("-o,--output", options->poses, "CSV file to write")
+      ->required()
+      ->check(named_as(".csv"));
   command->add_option("--ticks", options->ticks, "How many")
       ->check(number_between(1, 1e7))
       ->capture_default_str();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // palpate new-scene: two meshes, baked and placed just apart.
 #include "tools/palpate/new_scene.hpp"
+#include "tools/palpate/file_format.hpp"
 
 #include <algorithm>
 #include <array>
@@ -290,7 +291,8 @@ void add_new_scene(CLI::App& app) {
   command
       ->add_option("-o,--output", options->scene.scene,
                    "Scene file to write; the images go beside it")
-      ->required();
+      ->required()
+      ->check(named_as(".toml"));
   add_unit_scale(*command, options->scene.unit_scale);
   command->add_option("--threads", options->scene.threads, "Threads to use, 0: all cores")
       ->check(CLI::Range(0u, kMaxThreads))

@@ -39,16 +39,16 @@ class Printer {
   void show(std::string_view stage, double done) {
     const Clock::time_point now = Clock::now();
     const bool new_stage = stage != stage_;
-    if (new_stage) {
-      stage_ = stage;
-      stage_start_ = now;
-    }
+    // Stages that go on where the one before ended are one piece of work.
+    if (done < done_ / 2) work_start_ = now;
+    done_ = done;
+    stage_ = stage;
     if (now - start_ < kSilent) return;
     const milliseconds every = terminal_ ? kTerminalEvery : new_stage ? kSilent : kLineEvery;
     if (shown_ && now - last_ < every) return;
     last_ = now;
     shown_ = true;
-    print(std::clamp(done, 0.0, 1.0), now - stage_start_);
+    print(std::clamp(done, 0.0, 1.0), now - work_start_);
   }
 
  private:
@@ -69,7 +69,8 @@ class Printer {
   bool terminal_;
   bool shown_ = false;
   std::string stage_;
-  Clock::time_point start_ = Clock::now(), stage_start_ = start_, last_ = start_;
+  double done_ = 0;
+  Clock::time_point start_ = Clock::now(), work_start_ = start_, last_ = start_;
 };
 
 }  // namespace

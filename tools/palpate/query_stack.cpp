@@ -23,7 +23,8 @@ QueryStack::QueryStack(const config::Scene& scene, Engine& engine, std::span<con
   if (tap.out != nullptr) {
     const double asked_Hz = scene.contact_rate_Hz.value_or(rate_Hz);
     const double every = std::max(1.0, std::round(asked_Hz / kShownRate_Hz));
-    top_ = &tapped_.emplace(*top_, *tap.out, static_cast<std::uint32_t>(every), tap.origin_m);
+    top_ = &tapped_.emplace(*top_, *tap.out, static_cast<std::uint32_t>(every), scene.settings,
+                            tap.origin_m);
   }
   if (has_friction(scene)) {
     top_ =

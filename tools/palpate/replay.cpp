@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `palpate replay`: the contact engine over recorded poses, without a device.
+#include "tools/palpate/file_format.hpp"
 #include "tools/palpate/replay_loop.hpp"
 
 #include <algorithm>
@@ -220,9 +221,13 @@ void add_replay(CLI::App& app) {
   const auto a = std::make_shared<ReplayArguments>();
   command->add_option("SCENE", a->scene, "scene file (TOML)")->required();
   command->add_option("--poses", a->poses, "recorded poses (CSV)")->required();
-  command->add_option("-o,--output", a->ticks, "write a row a tick (CSV)")->required();
-  command->add_option("--contacts", a->contacts,
-                      "write a row a contact, with points on both surfaces (CSV)");
+  command->add_option("-o,--output", a->ticks, "write a row a tick (CSV)")
+      ->required()
+      ->check(named_as(".csv"));
+  command
+      ->add_option("--contacts", a->contacts,
+                   "write a row a contact, with points on both surfaces (CSV)")
+      ->check(named_as(".csv"));
   command->add_option("--engine", a->engine, "in place of the scene's engine")
       ->check(CLI::IsMember({"levels", "regions"}));
   command->add_flag("--exact", a->exact,

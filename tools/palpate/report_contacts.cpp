@@ -9,6 +9,7 @@
 
 #include "tools/palpate/command.hpp"
 #include "tools/palpate/replay_loop.hpp"
+#include "tools/realtime/contact_force.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -16,8 +17,8 @@ namespace {
 /// Keeps the contacts of each frame that are felt most. Frames come in order.
 class Picker {
  public:
-  Picker(const Frames& frames, double delta_m)
-      : delta_m_(delta_m),
+  Picker(const Frames& frames, const Settings& settings)
+      : settings_(settings),
         limit_(std::clamp<std::size_t>(kMaxShownContacts / frames.count, 1, kMaxContactsOfFrame)) {
     out_.starts.push_back(0);
   }
@@ -26,7 +27,10 @@ class Picker {
     std::vector<Contact> felt(frame.begin(), frame.end());
     const std::size_t shown = std::min(limit_, felt.size());
     std::partial_sort(felt.begin(), felt.begin() + static_cast<std::ptrdiff_t>(shown), felt.end(),
-                      [this](const Contact& a, const Contact& b) { return force(a) > force(b); });
+                      [this](const Contact& a, const Contact& b) {
+                        return realtime::contact_force(a, settings_) >
+                               realtime::contact_force(b, settings_);
+                      });
     felt.resize(shown);
     out_.contacts.insert(out_.contacts.end(), felt.begin(), felt.end());
     out_.starts.push_back(static_cast<std::uint32_t>(out_.contacts.size()));
@@ -39,12 +43,7 @@ class Picker {
   }
 
  private:
-  /// Up to the stiffness.
-  [[nodiscard]] double force(const Contact& c) const {
-    return c.weight * (delta_m_ - c.distance_m);
-  }
-
-  double delta_m_;
+  Settings settings_;
   std::size_t limit_;
   ShownContacts out_;
 };
@@ -145,7 +144,7 @@ PoseTrack track_of_frames(const ReportScene& view, const Frames& frames) {
 ShownContacts read_shown_contacts(const ReportScene& view, const ReportLine& line,
                                   const Frames& frames) {
   ContactFile file(view.contacts, view.scene.pairs.size());
-  Picker picker(frames, view.scene.settings.delta_m);
+  Picker picker(frames, view.scene.settings);
   for (std::size_t tick = 0; tick < frames.ticks; ++tick) {
     const std::span<const Contact> rows = file.of(tick, line.ticks[tick].contacts);
     if (tick % frames.stride == 0) picker.add(rows);
@@ -162,7 +161,7 @@ ShownContacts replay_shown_contacts(const ReportScene& view, const Frames& frame
                                     const bake::Progress& progress) {
   config::Scene scene = view.scene;
   scene.budget_us.reset();
-  Picker picker(frames, scene.settings.delta_m);
+  Picker picker(frames, scene.settings);
   ReplayListeners listeners;
   if (progress) {
     listeners.progress = [&](double done) { progress("contacts", done); };

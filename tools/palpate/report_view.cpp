@@ -10,6 +10,7 @@
 #include "tools/palpate/image_file.hpp"
 #include "tools/palpate/report_json.hpp"
 #include "tools/palpate/report_shapes.hpp"
+#include "tools/realtime/contact_force.hpp"
 
 namespace palpate::cli {
 namespace {
@@ -130,9 +131,9 @@ Json contacts_json(const config::Scene& scene, const Images& images,
                    const std::vector<PieceShapes>& pieces, const ShownContacts& shown,
                    Vec3d origin_m) {
   constexpr std::uint32_t kNotShown = 0xffffffffu;
-  std::vector<Vec3d> points;         // a, b of each
-  std::vector<float> distances;      // of each
-  std::vector<std::uint32_t> sides;  // body, place of the piece, level; of a, then of b of each
+  std::vector<Vec3d> points;             // a, b of each
+  std::vector<float> distances, forces;  // of each
+  std::vector<std::uint32_t> sides;      // body, place of the piece, level; of a, then of b of each
   const auto add_side = [&](const Side side, std::uint32_t level) {
     const auto& place = pieces[images.of_body[side.body]].place;
     const auto found = place.find(side.piece);
@@ -142,14 +143,13 @@ Json contacts_json(const config::Scene& scene, const Images& images,
     points.push_back(c.point_a_m - origin_m);
     points.push_back(c.point_b_m - origin_m);
     distances.push_back(static_cast<float>(c.distance_m));
+    forces.push_back(static_cast<float>(realtime::contact_force(c, scene.settings)));
     add_side(side_a(scene, c), c.level_a);
     add_side(side_b(scene, c), c.level_b);
   }
-  return {{"starts", packed(shown.starts)},
-          {"found", packed(shown.found)},
-          {"points", packed(to_floats(points))},
-          {"distances", packed(distances)},
-          {"sides", packed(sides)}};
+  return {{"starts", packed(shown.starts)},      {"found", packed(shown.found)},
+          {"points", packed(to_floats(points))}, {"distances", packed(distances)},
+          {"forces_N", packed(forces)},          {"sides", packed(sides)}};
 }
 
 /// What images are drawn as, `pieces` with them.

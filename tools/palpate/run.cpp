@@ -18,6 +18,7 @@
 #include "tools/palpate/device_choice.hpp"
 #include "tools/palpate/error_line.hpp"
 #include "tools/palpate/fault_words.hpp"
+#include "tools/palpate/file_format.hpp"
 #include "tools/palpate/live_view.hpp"
 #include "tools/palpate/query_stack.hpp"
 #include "tools/palpate/run_device.hpp"
@@ -290,7 +291,8 @@ void add_run(CLI::App& app) {
   command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
   command
       ->add_option("--device", options->device,
-                   "mock, mouse (with --view), usb[:SERIAL] or falcon[:SERIAL]")
+                   "mock, mouse (with --view), spacemouse, usb[:SERIAL], falcon[:SERIAL] or "
+                   "tcp:HOST[:PORT] (USB/IP, as palpate-sim serves it)")
       ->check(is_device())
       ->capture_default_str();
   command->add_option("--firmware", options->firmware,
@@ -307,7 +309,8 @@ void add_run(CLI::App& app) {
       "show the run in a page of this machine while it goes on; --view=PORT: at this port");
   view->check(CLI::Range(0, 65535));
   command->add_flag("--no-browser", options->no_browser, "with --view: only say the address");
-  command->add_option("-o,--output", options->trace, "write a record of each tick to this file");
+  command->add_option("-o,--output", options->trace, "write a record of each tick to this file")
+      ->check(named_as(".trace"));
   command
       ->add_option("--priority", options->realtime.fifo_priority,
                    "SCHED_FIFO priority of the loop; 0: an ordinary thread")

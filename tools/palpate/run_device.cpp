@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
+#include <utility>
+#include <variant>
 
 #include "hal/mock/device.hpp"
 #include "tools/palpate/command.hpp"
@@ -17,13 +20,16 @@ namespace {
 constexpr double kMockReadingsPerTick = 2.0;
 /// No hand is faster.
 constexpr double kFastestHand_m_per_s = 1.0;
-/// How deep the mouse may press, in radii of the smallest body: what goes much deeper comes out on
-/// the other side, with any device.
-constexpr double kDeepestOfRadius = 0.2;
+/// How deep the mouse may press, in radii of the smallest body: what goes deeper than the thinnest
+/// part of a body, a gear's tooth for one, comes out on its other side, with any device.
+constexpr double kDeepestOfRadius = 0.05;
 /// The mouse's share of the contacts' force there.
 constexpr double kPullOfContact = 0.25;
 constexpr double kFastestTurn_rad_per_s = 6;
 constexpr double kFarthestTurn_rad = 0.5;
+/// A SpaceMouse pushed all the way: so many radii of the smallest body a second.
+constexpr double kPushOfRadius_per_s = 1;
+constexpr double kPushTurns_rad_per_s = 1.5;
 
 /// The contacts stop the hand's mass within that depth d although it pulls: with F the force there,
 /// m v^2 / 2 + F d / 4 = F d / 2.
@@ -61,23 +67,45 @@ std::unique_ptr<hal::mock::MockDevice> make_mock(const RunDeviceOptions& options
   return std::make_unique<hal::mock::MockDevice>(std::move(hand), mock);
 }
 
+double least_radius_m(const config::Scene& scene, const SceneEngine& engine) {
+  double radius_m = engine.images()[scene.tool].header->radius_m;
+  for (const ImageView& body : engine.images()) {
+    radius_m = std::min<double>(radius_m, body.header->radius_m);
+  }
+  return radius_m;
+}
+
+std::unique_ptr<spacemouse::Leader> lead_by_space_mouse(
+    double radius_m, std::function<void(const hal::mock::Lead&)> lead) {
+  auto opened = spacemouse::open_puck();
+  if (const auto* problem = std::get_if<hal::DeviceProblem>(&opened)) fail("spacemouse", *problem);
+  const spacemouse::Pace pace{kPushOfRadius_per_s * radius_m, kPushTurns_rad_per_s};
+  return std::make_unique<spacemouse::Leader>(
+      std::move(std::get<std::unique_ptr<spacemouse::Puck>>(opened)), pace, std::move(lead),
+      [] { std::cerr << "The SpaceMouse is gone: nothing leads the tool any more.\n"; });
+}
+
 }  // namespace
 
-bool is_mock_hand(const std::string& device) { return device == "mock" || device == "mouse"; }
+bool is_mock_hand(const std::string& device) {
+  return device == "mock" || device == "mouse" || device == "spacemouse";
+}
 
 RunDevice make_run_device(const RunDeviceOptions& options, const config::Scene& scene,
                           const SceneEngine& engine, hal::Clock& clock) {
   RunDevice out;
-  if (options.name == "mouse") {
+  if (options.name == "mouse" || options.name == "spacemouse") {
+    const double radius_m = least_radius_m(scene, engine);
     hal::mock::Options led;
-    double radius_m = engine.images()[scene.tool].header->radius_m;
-    for (const ImageView& body : engine.images()) {
-      radius_m = std::min<double>(radius_m, body.header->radius_m);
-    }
     led.led = mouse_limits(scene, radius_m);
     auto mock = make_mock(options, scene, led);
-    out.lead = [hand = mock.get()](const hal::mock::Lead& lead) { hand->lead(lead); };
+    const auto lead = [hand = mock.get()](const hal::mock::Lead& said) { hand->lead(said); };
     out.device = std::move(mock);
+    if (options.name == "mouse") {
+      out.lead = lead;
+    } else {
+      out.leader = lead_by_space_mouse(radius_m, lead);
+    }
   } else if (options.name == "mock") {
     out.device = make_mock(options, scene, {});
   } else {

@@ -80,7 +80,11 @@ std::string timing_lines(const LoopReport& r) {
     deadlines += format(" (%.3f %%)", 100 * share(r.missed, r.ticks + r.missed)) +
                  ", latest command " + duration(r.overrun_ns_max) + " after its period";
   }
-  return line("deadlines", deadlines) + line("wake-up lateness", percentiles(r.latency)) +
+  std::string felt;
+  if (r.missed > 0 && r.force_N_max > 0) {
+    felt = line("", "meanwhile the last force stays: a hand feels a knock, or a ringing");
+  }
+  return line("deadlines", deadlines) + felt + line("wake-up lateness", percentiles(r.latency)) +
          line("tick time", percentiles(r.tick)) +
          line("age of readings", percentiles(r.state_age)) + histograms(r);
 }

@@ -21,6 +21,7 @@ struct LiveContact {
   std::array<float, 3> centre_m{};
   std::array<float, 3> normal{};
   float distance_m = 0;
+  float force_N = 0;  ///< that it carries, before limits
 };
 
 /// One tick's contacts and what is certain about them.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "tools/realtime/contact_force.hpp"
+
 namespace palpate::realtime {
 namespace {
 
@@ -13,8 +15,8 @@ std::array<float, 3> shown_vector(const Vec3d& v) {
 }  // namespace
 
 TappedQuery::TappedQuery(ContactQuery& contacts, hal::Mailbox<LiveTick>& out, std::uint32_t every,
-                         Vec3d origin_m) noexcept
-    : contacts_(contacts), out_(out), every_(every), origin_m_(origin_m) {}
+                         const Settings& settings, Vec3d origin_m) noexcept
+    : contacts_(contacts), out_(out), every_(every), settings_(settings), origin_m_(origin_m) {}
 
 Status TappedQuery::tick(const Pose& tool, const Budget& budget, TickResult& out) noexcept {
   const Status status = contacts_.tick(tool, budget, out);
@@ -36,7 +38,8 @@ void TappedQuery::show(const Pose& tool, const TickResult& result) noexcept {
   for (std::size_t i = 0; i < shown; ++i) {
     const Contact& from = result.contacts[i * found / shown];
     tick_.contacts[i] = {shown_vector(from.centre_m - origin_m_), shown_vector(from.normal),
-                         static_cast<float>(from.distance_m)};
+                         static_cast<float>(from.distance_m),
+                         static_cast<float>(contact_force(from, settings_))};
   }
   out_.write(tick_);
 }

@@ -13,9 +13,10 @@ class TappedQuery final : public ContactQuery {
  public:
   /// @param contacts  outlives this, as does `out`
   /// @param every     >= 1
+  /// @param settings  that the contacts are felt with
   /// @param origin_m  of the view, in world axes
   TappedQuery(ContactQuery& contacts, hal::Mailbox<LiveTick>& out, std::uint32_t every,
-              Vec3d origin_m) noexcept;
+              const Settings& settings, Vec3d origin_m) noexcept;
 
   Status tick(const Pose& tool, const Budget& budget, TickResult& out) noexcept override;
 
@@ -26,6 +27,7 @@ class TappedQuery final : public ContactQuery {
   hal::Mailbox<LiveTick>& out_;
   std::uint32_t every_;
   std::uint32_t since_ = 0;  ///< the last copy
+  Settings settings_;
   Vec3d origin_m_;
   LiveTick tick_;
 };

@@ -4,7 +4,7 @@
 packages_build="g++ cmake ninja-build git ca-certificates libcgal-dev libboost-dev libeigen3-dev libtbb-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libusb-1.0-0-dev libsodium-dev libpng-dev"
 # For the page of reports, which is built where node is found.
 packages_page="nodejs"
-packages_test="$packages_page libgtest-dev clang libclang-rt-14-dev llvm clang-format clang-tidy binutils python3 gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-newlib g++-aarch64-linux-gnu qemu-user-static umockdev dfu-util usbip openssl pybind11-dev python3-dev python3-numpy"
+packages_test="$packages_page libgtest-dev clang libclang-rt-14-dev llvm clang-format clang-tidy binutils python3 gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-newlib g++-aarch64-linux-gnu qemu-user-static umockdev dfu-util usbip openssl pybind11-dev python3-dev python3-numpy libspnav-dev"
 # Only for tests labelled long: reports in a browser, two minutes to install on a bare machine; packages in a bare Debian.
 packages_browser="chromium dpkg-dev mmdebstrap"
 # Only for tools/bench, which is built where these are found.

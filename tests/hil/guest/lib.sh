@@ -67,7 +67,7 @@ sudo() { "$@"; }
 # Does all that doctor says.
 mend() { cd "$project" && eval "$(palpate doctor | sed -n 's/^ *mend: *//p')" >"$scratch/mended"; cd - >/dev/null; }
 # Does what doctor says about the threads that serve USB.
-raise_threads() { eval "$(palpate doctor | sed -n '/^mend  usb_threads/,/mend:/s/.*mend: *//p')"; }
+raise_threads() { eval "$(palpate doctor | sed -n '/^fix   usb_threads/,/fix:/s/.*fix: *//p')"; }
 
 is_there() { palpate devices --json | grep -q '"ready"'; }
 

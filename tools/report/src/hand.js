@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mouse as the hand: says where it wants the tool, and draws how it pulls.
+// The mouse, or a gamepad, as the hand: says where it wants the tool, and draws how it pulls.
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Plane, Quaternion, Raycaster, Vector2, Vector3 } from 'three';
 
 const kTurn_rad_per_pixel = 0.008;
 const kWheelOfSize = 0.0006;  // of the larger body's radius, for a pixel of the wheel
 const kWheelLasts_ms = 400;
+const kPushOfSize_per_s = 0.35;  // of a stick, in radii of the larger body
+const kPushTurns_rad_per_s = 1.2;
+const kPushAheadOfSize = 0.1;  // it does not run away from a tool that is held up
+const kPushAhead_rad = 0.5;
 
 export class Hand {
   #stage;
@@ -15,7 +19,8 @@ export class Hand {
   #held = null;  // {point: in the tool's axes, hit, plane, turns, from: where the pointer was}
   #wheel_ms = -Infinity;
   #pending = false;
-  #line = new Line(new BufferGeometry(), new LineBasicMaterial({ depthTest: false }));
+  #pushed = false;  // by a stick
+  #line = new Line(new BufferGeometry(), new LineBasicMaterial({ depthTest: false, transparent: true }));
 
   /// send({position, orientation} | null): called once a drawn frame at most; null: it has let go.
   constructor(stage, tool, centre, send) {
@@ -25,7 +30,7 @@ export class Hand {
     this.centre = new Vector3().fromArray(centre);
     this.#line.geometry.setAttribute('position', new BufferAttribute(new Float32Array(6), 3));
     this.#line.frustumCulled = false;
-    this.#line.renderOrder = 5;
+    this.#line.renderOrder = 7;
     this.#line.visible = false;
     stage.add(this.#line);
     const { host } = stage;
@@ -42,6 +47,37 @@ export class Hand {
     this.#pose.position.fromArray(pose, 0);
     this.#pose.orientation.fromArray(pose, 3);
     this.#drawPull();
+  }
+
+  /// Goes on by so many seconds: move [right, up, away], turn [about up, about right], as seen, each -1 to 1. Zeros: it stays.
+  push(move, turn, seconds) {
+    if (this.#held || ![...move, ...turn].some((value) => value !== 0)) return;
+    if (!this.#pushed || !this.#wanted) this.#begin();
+    this.#pushed = true;
+    const { quaternion } = this.#stage.camera;
+    const [right, up, away] = move;
+    const way = new Vector3(right, up, -away).applyQuaternion(quaternion);
+    this.#wanted.position.addScaledVector(way, kPushOfSize_per_s * this.#stage.size * seconds);
+    this.#turn(...turn.map((value) => (value * kPushTurns_rad_per_s * seconds) / kTurn_rad_per_pixel));
+    this.#stayNear();
+    this.#say();
+  }
+
+  /// A stick lets go, if it was the one that pulled.
+  dropPush() {
+    if (!this.#pushed) return;
+    this.#pushed = false;
+    if (this.#held) return;
+    this.#wanted = null;
+    this.#say();
+  }
+
+  #stayNear() {
+    const { position, orientation } = this.#pose;
+    const ahead = this.#wanted.position.clone().sub(position).clampLength(0, kPushAheadOfSize * this.#stage.size);
+    this.#wanted.position.copy(position).add(ahead);
+    const angle = orientation.angleTo(this.#wanted.orientation);
+    if (angle > kPushAhead_rad) this.#wanted.orientation.copy(orientation.clone().rotateTowards(this.#wanted.orientation, kPushAhead_rad));
   }
 
   paint(colour) {
@@ -73,6 +109,7 @@ export class Hand {
     if (!hit) return;
     event.stopPropagation();
     event.preventDefault();
+    this.#pushed = false;
     this.#begin();
     const drawn = this.#stage.poseOf(this.#tool);
     this.#held = {

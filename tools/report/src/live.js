@@ -8,6 +8,7 @@ import { leadMessage, letGoMessage, readFrame } from './live_data.js';
 import { LiveStage } from './live_stage.js';
 import { certificateWords, contactWords, deadlineWords, forceWords, stateWords, tickWords } from './live_words.js';
 import { addBodyChoices } from './looks.js';
+import { Pad } from './pad.js';
 import { Strip } from './strip.js';
 
 const kWordsEvery_ms = 100;
@@ -54,6 +55,7 @@ try {
   at('near').addEventListener('click', () => stage.lookAtContacts());
   if (data.lead) {
     hand = new Hand(stage, view.tool, view.images[view.bodies[view.tool].image].centre_m, send);
+    new Pad(hand, at('pad'));
     const paint = () => hand.paint(style('--accent'));
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', paint);
     paint();

@@ -3,7 +3,7 @@
 
 export const kMarks = { missed: 1, fault: 2, cut: 4 };
 const kSampleNumbers = 8;
-const kContactNumbers = 7;
+const kContactNumbers = 8;
 
 /// One frame; null where it is not one.
 export function readFrame(buffer, headNumbers) {
@@ -39,12 +39,12 @@ export function readFrame(buffer, headNumbers) {
     samples: Array.from({ length: samples }, (_, i) => {
       const s = rest.subarray(kSampleNumbers * i, kSampleNumbers * (i + 1));
       return {
-        t_s: head[6] + s[0], rendered_N: s[1], sent_N: s[2], sent_Nm: s[3], energy_J: s[4], tick_us: s[5], late_us: s[6], marks: s[7],
+        t_s: head[6] + s[0], rendered_N: s[1], sent_N: s[2], sent_Nm: s[3], energy_mJ: 1e3 * s[4], tick_us: s[5], late_us: s[6], marks: s[7],
       };
     }),
     contacts: Array.from({ length: contacts }, (_, i) => {
       const c = rest.subarray(kSampleNumbers * samples + kContactNumbers * i);
-      return { point: Array.from(c.subarray(0, 3)), normal: Array.from(c.subarray(3, 6)), distance: c[6] };
+      return { point: Array.from(c.subarray(0, 3)), normal: Array.from(c.subarray(3, 6)), distance: c[6], force_N: c[7] };
     }),
   };
 }

@@ -28,7 +28,7 @@ fillList('notes', data.notes);
 // The frames of the 3D view; plots may show more of the ticks.
 data.shown = data.view?.frames ?? data.frames;
 const playhead = new Playhead(data.shown?.count ?? 1);
-if (data.settings.length > 0) showTrade(document.getElementById('trade'), data.settings);
+if (data.settings.length > 0) showTrade(document.getElementById('trade'), data.settings, data.lines);
 if (data.view) showView(data, playhead);
 if (data.lines.length > 0) showProfiles(data, playhead);
 if (data.run) showRun(data, playhead);

@@ -58,7 +58,8 @@ function drawMarks(u, marks) {
   ctx.restore();
 }
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-const colourOf = (index) => style(`--series-${index % 8}`);
+/// A place in the style sheet's series, or the name of a colour of its own.
+const colourOf = (colour) => style(typeof colour === 'string' ? colour : `--series-${colour % 8}`);
 
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
   for (const rebuild of rebuilds) rebuild();
@@ -182,6 +183,7 @@ export function addPlot(
   heading.textContent = title;
   const place = document.createElement('div');
   host.append(heading, place);
+  host.dataset.colours = series.map((s, i) => `${s.name}: ${s.colour ?? i}`).join('; ');
   host.dataset.points = 0;
   let table = x ? [values(x, logX), ...series.map((s) => values(s.values, logY))] : joined(series, logX, logY);
   const filled = table.slice(1).flat().filter((v) => v !== null && v !== undefined).length;

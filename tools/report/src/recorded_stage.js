@@ -10,6 +10,7 @@ export class RecordedStage extends Stage {
     this.times = times;
     this.forces = floats(view.force_N);
     this.tracks = view.bodies.map((body) => floats(body.track));
+    this.most_N = Math.hypot(...this.forceAt(this.strongestFrame()));
   }
 
   /// The frame in which the tool feels most.
@@ -34,7 +35,7 @@ export class RecordedStage extends Stage {
     const between = (a, b) => Array.from(a, (x, k) => (x + b[k]) / 2);
     this.showContacts(contacts.map((c) => ({ ...c, point: between(c.a.point, c.b.point) })));
     const force = this.forceAt(frame);
-    this.showForce(force, Math.hypot(...force) / Math.hypot(...this.forceAt(this.strongestFrame())));
+    this.showForce(force, this.most_N);
     this.draw();
   }
 }

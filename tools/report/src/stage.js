@@ -2,11 +2,18 @@
 // What stands in a 3D view: bodies, the pieces that are in contact, contacts, and the force.
 // Lengths are metres from the tool's first position. Drawn when something changes, not all the time.
 import {
-  AmbientLight, ArrowHelper, Box3, BufferAttribute, BufferGeometry, Color, DirectionalLight, Group, LineBasicMaterial,
+  AmbientLight, ArrowHelper, Box3, BufferAttribute, BufferGeometry, CanvasTexture, Color, DirectionalLight, Group, LineBasicMaterial,
   LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, Points, PointsMaterial, Scene, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { counts, floats } from './data.js';
+import { Overlay } from './overlay.js';
+import { number } from './units.js';
+
+const kFelt = 0.01;  // of the largest: what carries less is not marked
+const kShown_N = 1e-3;
+// Transparent though they are not: what is see-through is drawn after all that is not.
+const kOnTop = { depthTest: false, transparent: true };
 
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -16,6 +23,22 @@ function shapeOf(image) {
   geometry.setIndex(new BufferAttribute(counts(image.faces), 1));
   geometry.computeVertexNormals();
   return geometry;
+}
+
+/// A disc, for points.
+function disc() {
+  const picture = document.createElement('canvas');
+  picture.width = picture.height = 64;
+  const ink = picture.getContext('2d');
+  ink.fillStyle = '#fff';
+  ink.arc(32, 32, 30, 0, 2 * Math.PI);
+  ink.fill();
+  return new CanvasTexture(picture);
+}
+
+function dots(size_px, map, more) {
+  const material = new PointsMaterial({ size: size_px, sizeAttenuation: false, map, alphaTest: 0.5, ...kOnTop, ...more });
+  return new Points(new BufferGeometry(), material);
 }
 
 /// Triples into an attribute, in the memory that it has where they fit.
@@ -64,12 +87,15 @@ export class Stage {
   #scene = new Scene();
   #camera = new PerspectiveCamera(40, 1, 0.01, 100);
   #bodies = [];
-  #contactPoints = new Points(new BufferGeometry(), new PointsMaterial({ size: 7, sizeAttenuation: false, vertexColors: true, depthTest: false }));
-  #normals = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ depthTest: false }));
+  #contactPoints;
+  #carrying;  // a rim about those that carry the force
+  #normals = new LineSegments(new BufferGeometry(), new LineBasicMaterial(kOnTop));
   #arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 1, 0x888888);
   #pending = false;
   #contacts = [];
   #patched = false;
+  #overlay;
+  #force_N = 0;
 
   /// Throws where the browser has no WebGL.
   constructor(host, view) {
@@ -82,18 +108,23 @@ export class Stage {
     this.renderer.domElement.setAttribute('role', 'img');
     this.#addLights();
     this.#addBodies();
-    for (const part of [this.#contactPoints, this.#normals]) {
-      part.renderOrder = 3;
+    const round = disc();
+    this.#carrying = dots(14, round);
+    this.#contactPoints = dots(8, round, { vertexColors: true });
+    [this.#normals, this.#carrying, this.#contactPoints].forEach((part, i) => {
+      part.renderOrder = 3 + i;
       part.frustumCulled = false;
-    }
-    this.#scene.add(this.#contactPoints, this.#normals, this.#arrow);
+    });
+    this.#scene.add(this.#normals, this.#carrying, this.#contactPoints, this.#arrow);
     for (const part of [this.#arrow.line, this.#arrow.cone]) {
-      part.material.depthTest = false;
-      part.renderOrder = 4;
+      Object.assign(part.material, kOnTop);
+      part.renderOrder = 6;
     }
     this.#camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.#camera, this.renderer.domElement);
     this.controls.addEventListener('change', () => this.#draw());
+    this.#overlay = new Overlay(host, view.bodies);
+    for (const type of ['pointermove', 'pointerdown', 'pointerleave']) host.addEventListener(type, (event) => this.#point(event));
     new ResizeObserver(() => this.#resize()).observe(host);
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.#paint());
     this.#resize();
@@ -113,7 +144,7 @@ export class Stage {
     group.quaternion.fromArray(pose, at + 3);
   }
 
-  /// contacts: [{point, distance, normal?, a?, b?}]; a and b say on which pieces they lie.
+  /// contacts: [{point, distance, force_N, normal?, a?, b?}]; a and b say on which pieces they lie, force_N what each carries.
   showContacts(contacts) {
     this.#contacts = contacts;
     const sides = contacts.flatMap((c) => [c.a, c.b]).filter((side) => side);
@@ -124,14 +155,16 @@ export class Stage {
     this.#drawContacts();
   }
 
-  /// From the middle of the contacts. share: of the longest arrow; 0 where there is none to show.
-  showForce(force, share) {
+  /// From the middle of the contacts. most_N: the force of the longest arrow.
+  showForce(force, most_N) {
     const direction = new Vector3().fromArray(force);
-    this.#arrow.visible = share > 0 && direction.lengthSq() > 0 && this.#contacts.length > 0;
+    this.#force_N = direction.length();
+    this.#arrow.visible = this.#force_N > kShown_N && this.#contacts.length > 0;
     if (!this.#arrow.visible) return;
+    const share = this.#force_N / Math.max(most_N, this.#force_N);
     this.#arrow.position.copy(this.#contactCentre());
     this.#arrow.setDirection(direction.normalize());
-    this.#arrow.setLength((0.15 + 0.65 * Math.min(share, 1)) * this.size, 0.12 * this.size, 0.07 * this.size);
+    this.#arrow.setLength((0.12 + 0.38 * share) * this.size, 0.09 * this.size, 0.05 * this.size);
   }
 
   /// Once everything is in its place.
@@ -139,8 +172,15 @@ export class Stage {
     this.#draw();
   }
 
+  /// What is pointed at while no button is down; a finger points where it comes down.
+  #point(event) {
+    const busy = event.type === 'pointerleave' || (event.type === 'pointermove' && event.buttons !== 0);
+    this.#overlay.point(busy ? null : event);
+    this.#draw();
+  }
+
   /// Of the force's arrow, in pixels of the host; null where there is none in sight.
-  arrowTip() {
+  #arrowTip() {
     if (!this.#arrow.visible) return null;
     const tip = new Vector3(0, this.#arrow.cone.position.y, 0).applyQuaternion(this.#arrow.quaternion);
     return this.pixelOf(tip.add(this.#arrow.position));
@@ -192,7 +232,7 @@ export class Stage {
 
   lookAtContacts() {
     if (this.#contacts.length === 0) return this.lookAtAll();
-    this.#lookFrom(this.#contactCentre(), 0.8 * this.size);
+    this.#lookFrom(this.#contactCentre(), 1.2 * this.size);
   }
 
   #addLights() {
@@ -232,13 +272,17 @@ export class Stage {
     const gap = new Color(style('--ink'));
     const overlap = new Color(style('--overlap'));
     const normals = [];
-    this.#contacts.forEach(({ point, distance, normal }, i) => {
+    const carrying = [];
+    const most_N = this.#contacts.reduce((most, c) => Math.max(most, c.force_N), 0);
+    this.#contacts.forEach(({ point, distance, normal, force_N }, i) => {
       points.set(point, 3 * i);
       (distance < 0 ? overlap : gap).toArray(colours, 3 * i);
+      if (force_N > kFelt * most_N) carrying.push(...point);
       if (normal) normals.push(...point, ...point.map((x, k) => x + 0.12 * this.size * normal[k]));
     });
     refill(this.#contactPoints.geometry, 'position', points);
     refill(this.#contactPoints.geometry, 'color', colours);
+    refill(this.#carrying.geometry, 'position', new Float32Array(carrying));
     refill(this.#normals.geometry, 'position', new Float32Array(normals));
   }
 
@@ -270,12 +314,28 @@ export class Stage {
     this.#draw();
   }
 
+  /// Where the view turns about.
+  #metresPerPixel() {
+    const away = this.#camera.position.distanceTo(this.controls.target);
+    return (2 * away * Math.tan((Math.PI / 360) * this.#camera.fov)) / Math.max(this.host.clientHeight, 1);
+  }
+
+  #drawOverlay() {
+    this.#overlay.draw(this.#camera, {
+      force: { text: `${number(this.#force_N, 2)} N`, at: this.#arrowTip() },
+      contacts: this.#contacts,
+      pixelOf: (i) => this.pixelOf(new Vector3().fromArray(this.#contacts[i].point)),
+      metresPerPixel: this.#metresPerPixel(),
+    });
+  }
+
   /// The style sheet's colours, also after it changed between light and dark.
   #paint() {
     this.#scene.background = new Color(style('--paper'));
     this.#bodies.forEach(({ mesh }, index) => mesh.material.color.set(style(`--body-${index % 3}`)));
     this.#arrow.setColor(new Color(style('--series-3')));
-    this.#normals.material.color.set(style('--series-2'));
+    this.#carrying.material.color.set(style('--series-3'));
+    this.#normals.material.color.set(style('--quiet'));
     this.#drawContacts();
     this.#draw();
   }
@@ -286,6 +346,7 @@ export class Stage {
     requestAnimationFrame(() => {
       this.#pending = false;
       this.renderer.render(this.#scene, this.#camera);
+      this.#drawOverlay();
     });
   }
 }

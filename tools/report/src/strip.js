@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The last seconds of a run, as plots that move on.
+import { kOfRun } from './colours.js';
 import { kMarks } from './live_data.js';
 import { addPlot } from './plot.js';
 
@@ -14,7 +15,7 @@ export class Strip {
   constructor(hosts, { seconds, budget_us, rate_Hz }) {
     this.seconds = seconds;
     const add = (host, title, yLabel, names, keys, more = {}) => {
-      const series = names.map(([name, colour]) => ({ name, values: [], kind: 'line', colour }));
+      const series = names.map((name) => ({ name, values: [], kind: 'line', colour: kOfRun[name] }));
       const plot = addPlot(host, {
         title, x: [], series, xLabel: 's', yLabel, height: 118, compact: true, span: () => this.#span(), edgeMarks: () => this.#marks(), ...more,
       });
@@ -22,10 +23,10 @@ export class Strip {
     };
     const period_us = 1e6 / rate_Hz;
     const budget = budget_us === null ? { y: period_us, name: 'period' } : { y: budget_us, name: 'budget' };
-    add(hosts.force, 'Force (N)', 'N', [['computed', 5], ['sent', 3]], ['rendered_N', 'sent_N']);
-    add(hosts.torque, 'Torque sent (N m)', 'N m', [['sent', 3]], ['sent_Nm']);
-    add(hosts.energy, 'Energy from the hand (J)', 'J', [['energy', 2]], ['energy_J']);
-    add(hosts.time, 'Tick time (µs)', 'µs', [['tick', 1]], ['tick_us'], { lines: [budget] });
+    add(hosts.force, 'Force (N)', 'N', ['computed', 'sent'], ['rendered_N', 'sent_N']);
+    add(hosts.torque, 'Torque sent (N m)', 'N m', ['sent'], ['sent_Nm']);
+    add(hosts.energy, 'Energy from the hand (mJ)', 'mJ', ['energy'], ['energy_mJ']);
+    add(hosts.time, 'Tick time (µs)', 'µs', ['tick'], ['tick_us'], { lines: [budget] });
   }
 
   push(samples) {

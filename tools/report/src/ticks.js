@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Plots over the ticks of replays and runs: profiles, durations, certificates.
+import { kOfRun } from './colours.js';
 import { counts, floats } from './data.js';
 import { addPlot } from './plot.js';
+import { pointGroups } from './trade.js';
 
 const at = (id) => document.getElementById(id);
 
 /// A line keeps its colour from plot to plot.
 function lineSeries(lines, key) {
   return lines.map((line, colour) => ({ name: line.name, values: floats(line[key]), kind: 'line', colour }));
+}
+
+/// Lines of a run: [name, values] each.
+function ofRun(...lines) {
+  return lines.map(([name, packed]) => ({ name, values: floats(packed), kind: 'line', colour: kOfRun[name] }));
 }
 
 /// What every plot over the time of the recording has.
@@ -42,7 +49,7 @@ export function showProfiles(data, playhead) {
   const force = lineSeries(data.lines, 'force_N');
   if (data.run) {
     force[0].name = 'computed';
-    force.push({ name: 'sent', values: floats(data.run.sent_N), kind: 'line' });
+    force.push(...ofRun(['sent', data.run.sent_N]));
   }
   follow(data, playhead, [
     addPlot(at('force'), { ...common, title: 'Force', yLabel: 'force (N)', series: force }),
@@ -64,19 +71,18 @@ export function showRun(data, playhead) {
   const { run } = data;
   at('run').hidden = false;
   const common = overTime(data, playhead);
-  const axes = (packed) => ['x', 'y', 'z'].map((name, i) => ({ name, values: floats(packed[i]), kind: 'line' }));
-  const one = (name, packed) => [{ name, values: floats(packed), kind: 'line' }];
+  const axes = (packed) => ofRun(...['x', 'y', 'z'].map((name, i) => [name, packed[i]]));
   follow(data, playhead, [
     addPlot(at('sent'), { ...common, title: 'Force sent', yLabel: 'force (N)', series: axes(run.sent_xyz_N) }),
     addPlot(at('torque'), {
       ...common,
       title: 'Torque',
       yLabel: 'torque (N m)',
-      series: [...one('computed', run.torque_Nm), ...one('sent', run.sent_torque_Nm)],
+      series: ofRun(['computed', run.torque_Nm], ['sent', run.sent_torque_Nm]),
     }),
     addPlot(at('position'), { ...common, title: 'Position of the tool', yLabel: 'moved by (mm)', series: axes(run.moved_xyz_mm) }),
-    addPlot(at('energy'), { ...common, title: 'Energy from the hand to the scene', yLabel: 'energy (mJ)', series: one('energy', run.energy_mJ) }),
-    addPlot(at('age'), { ...common, title: 'Age of readings', yLabel: 'age (µs)', logY: true, series: one('age', run.age_us) }),
+    addPlot(at('energy'), { ...common, title: 'Energy from the hand to the scene', yLabel: 'energy (mJ)', series: ofRun(['energy', run.energy_mJ]) }),
+    addPlot(at('age'), { ...common, title: 'Age of readings', yLabel: 'age (µs)', logY: true, series: ofRun(['age', run.age_us]) }),
   ]);
 }
 
@@ -97,12 +103,12 @@ export function showLatency(data, playhead) {
     yLabel: 'share of ticks (%)',
     logX: true,
     logY: true,
-    series: sets.map((set) => ({ name: set.name, values: share(set), kind: 'steps', width: 2 })),
+    series: sets.map((set, i) => ({ name: set.name, values: share(set), kind: 'steps', width: 2, colour: i < data.lines.length ? i : kOfRun.late })),
   });
   const series = lineSeries(data.lines, 'time_us');
   if (data.late_us) {
     series[0].name = 'tick';
-    series.push({ name: 'late wake-up', values: floats(data.late_us), kind: 'line' });
+    series.push({ name: 'late wake-up', values: floats(data.late_us), kind: 'line', colour: kOfRun.late });
   }
   follow(data, playhead, [
     addPlot(at('timeline'), {
@@ -120,14 +126,14 @@ export function showLatency(data, playhead) {
 function scatterSeries(data) {
   const mm = (list) => Array.from(list, (v) => (v === null ? null : 1e3 * v));
   if (data.settings.length > 0) {
-    return ['levels', 'regions'].map((engine) => {
-      const members = data.settings.filter((s) => s.engine === engine && !s.exact);
-      return { name: engine, kind: 'points', x: mm(members.map((s) => s.error_m)), values: mm(members.map((s) => s.bound_m)) };
-    });
+    return pointGroups(data.settings.filter((s) => !s.exact), data.lines).map(({ name, members, ...look }) => ({
+      name, ...look, x: mm(members.map((s) => s.error_m)), values: mm(members.map((s) => s.bound_m)),
+    }));
   }
   return data.lines
-    .filter((line) => line.error_m)
-    .map((line) => ({ name: line.name, kind: 'points', size: 5, x: mm(floats(line.error_m)), values: mm(floats(line.bound_m)) }));
+    .map((line, colour) => ({ line, colour }))
+    .filter(({ line }) => line.error_m)
+    .map(({ line, colour }) => ({ name: line.name, kind: 'points', size: 5, colour, x: mm(floats(line.error_m)), values: mm(floats(line.bound_m)) }));
 }
 
 /// Where nothing is better than promised, and nothing worse.
@@ -135,7 +141,7 @@ function equality(series) {
   const positive = series.flatMap((s) => [...s.x, ...s.values]).filter((v) => v > 0);
   if (positive.length === 0) return [];
   const ends = positive.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [Infinity, 0]);
-  return [{ name: 'bound = error', kind: 'joined', dash: [2, 4], colour: 6, x: ends, values: ends }];
+  return [{ name: 'bound = error', kind: 'joined', dash: [2, 4], colour: '--quiet', x: ends, values: ends }];
 }
 
 export function showCertificate(data, playhead) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Error against time, a point a setting.
+import { colourOfSetting } from './colours.js';
 import { addPlot } from './plot.js';
 import { duration, millimetres, number, percent } from './units.js';
 
@@ -12,14 +13,19 @@ function describe(s) {
   );
 }
 
-function groups(settings) {
+/// Settings as points: what has a line in the profiles in its colour; the others of each engine together, in grey beside those.
+export function pointGroups(settings, lines) {
   const out = new Map();
   for (const s of settings) {
-    const name = s.exact ? `${s.engine}, exact` : s.engine;
-    if (!out.has(name)) out.set(name, []);
-    out.get(name).push(s);
+    const own = colourOfSetting(s, lines);
+    const name = [s.engine, ...(own === null ? [] : [s.words]), ...(s.exact ? ['exact'] : [])].join(', ');
+    if (!out.has(name)) {
+      const colour = own ?? (lines.length > 0 ? ['--quiet', '--ink'] : [0, 1])[Number(s.engine !== 'levels')];
+      out.set(name, { name, kind: 'points', colour, size: own === null ? 7 : 10, hollow: s.exact, members: [] });
+    }
+    out.get(name).members.push(s);
   }
-  return out;
+  return [...out.values()];
 }
 
 /// The best trades of each delta: settings of different deltas do not compete.
@@ -62,7 +68,7 @@ function order(value, down) {
 }
 
 /// A click on a title sorts by it, a second one the other way round.
-function fillTable(table, settings) {
+function fillTable(table, settings, lines) {
   const head = table.createTHead().insertRow();
   const body = table.createTBody();
   const sort = (column, down) => {
@@ -75,6 +81,11 @@ function fillTable(table, settings) {
       const row = body.insertRow();
       row.className = s.pareto ? 'best' : '';
       for (const [, value, text] of columns) row.insertCell().textContent = text ? text(value(s)) : value(s);
+      const own = colourOfSetting(s, lines);
+      if (own === null) continue;
+      const chip = document.createElement('i');
+      chip.style.background = `var(--series-${own})`;
+      row.cells[1].append(chip);
     }
   };
   columns.forEach(([title], column) => {
@@ -90,25 +101,18 @@ function fillTable(table, settings) {
   sort(2, false);
 }
 
-export function showTrade(section, settings) {
+export function showTrade(section, settings, lines) {
   section.hidden = false;  // first: a plot is as wide as its place
   const series = [];
-  for (const [name, members] of groups(settings)) {
-    series.push({
-      name,
-      kind: 'points',
-      colour: members[0].engine === 'levels' ? 0 : 1,
-      hollow: members[0].exact,
-      x: members.map((s) => s.median_us),
-      values: members.map((s) => 100 * s.drawn_nrmse),
-    });
+  for (const { members, ...look } of pointGroups(settings, lines)) {
+    series.push({ ...look, x: members.map((s) => s.median_us), values: members.map((s) => 100 * s.drawn_nrmse) });
   }
   for (const [delta, members] of fronts(settings)) {
     series.push({
       name: `best trades, delta ${millimetres(delta)}`,
       kind: 'joined',
       dash: [6, 4],
-      colour: 6,
+      colour: '--quiet',
       x: members.map((s) => s.median_us),
       values: members.map((s) => 100 * s.drawn_nrmse),
     });
@@ -132,5 +136,5 @@ export function showTrade(section, settings) {
     height: 380,
     onPoint: nearest,
   });
-  fillTable(document.getElementById('settings'), settings);
+  fillTable(document.getElementById('settings'), settings, lines);
 }

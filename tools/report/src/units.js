@@ -27,6 +27,12 @@ export function length(metres) {
   return size >= 1e-7 ? `${number(1e6 * metres)} µm` : `${number(1e9 * metres)} nm`;
 }
 
+/// The longest of 1, 2 and 5 times a power of ten that is no longer than `most`.
+export function roundLength(most) {
+  const power = 10 ** Math.floor(Math.log10(most) + 1e-9);
+  return power * [5, 2, 1].find((digit) => digit * power <= most * (1 + 1e-9));
+}
+
 export function duration(us) {
   if (us === null || Number.isNaN(us)) return 'not timed';
   if (us < 1) return `${number(us * 1e3)} ns`;

@@ -15,6 +15,7 @@ class Contacts {
     this.found = counts(packed.found);
     this.points = floats(packed.points);
     this.distances = floats(packed.distances);
+    this.forces_N = floats(packed.forces_N);
     this.sides = counts(packed.sides);
   }
 
@@ -25,7 +26,7 @@ class Contacts {
         const [body, place, level] = this.sides.subarray(6 * i + 3 * k, 6 * i + 3 * k + 3);
         return { body, place: place === kNotShown ? null : place, level, point: this.points.subarray(6 * i + 3 * k, 6 * i + 3 * k + 3) };
       };
-      out.push({ distance: this.distances[i], a: side(0), b: side(1) });
+      out.push({ distance: this.distances[i], force_N: this.forces_N[i], a: side(0), b: side(1) });
     }
     return out;
   }
@@ -77,6 +78,7 @@ function addLegend(view, stage) {
   }
   entry('var(--overlap)', 'contact where the pieces overlap');
   entry('var(--ink)', 'contact with a gap');
+  entry('var(--series-3)', 'rim of a contact that carries force');
 }
 
 function addTransport(playhead, times) {
