@@ -77,7 +77,7 @@ struct Settings {
   Order order = Order::force;
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
 
-  ForceLaw force_law = ForceLaw::least_push;  ///< regions engine; levels has the penalty alone
+  ForceLaw force_law = ForceLaw::penalty;  ///< regions engine; levels has the penalty alone
 
   /// Regions engine: refinement may end once the certified error of the force is no more; 0: exact.
   /// Whether two bodies touch is decided all the same, as far as a budget goes.

@@ -78,7 +78,6 @@ Felt feel(const Press& press) {
   settings.exact = true;
   BakedScene levels({tool.view, other.view}, {{0, 1}}, settings);
   settings.engine = EngineKind::regions;
-  settings.force_law = ForceLaw::penalty;  // as levels has it
   BakedScene regions({tool.view, other.view}, {{0, 1}}, settings);
   Felt felt;
   double offset_m = 0;

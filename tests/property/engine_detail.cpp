@@ -44,10 +44,7 @@ double left_out_m() {
 }
 
 Settings regions_settings() {
-  return {.engine = EngineKind::regions,
-          .delta_m = kWide,
-          .force_law = ForceLaw::penalty,
-          .stiffness_N_per_m = 1000};
+  return {.engine = EngineKind::regions, .delta_m = kWide, .stiffness_N_per_m = 1000};
 }
 
 struct Placement {

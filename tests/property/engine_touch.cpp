@@ -43,7 +43,6 @@ TEST_P(Touch, seldom_kicks_where_sharp_bodies_begin_to_overlap) {
   const Settings settings{.engine = GetParam().kind,
                           .delta_m = kDelta,
                           .exact = true,
-                          .force_law = ForceLaw::penalty,
                           .stiffness_N_per_m = 1 / kDelta,
                           .cluster_radius_m = kDelta};
   std::mt19937 rng(5);
