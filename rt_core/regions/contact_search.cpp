@@ -28,13 +28,13 @@ constexpr std::uint32_t kSolvedPerUnit = 8;
 /// Vertices that are measured because they are likely to change the push, at most.
 constexpr std::uint32_t kMostGuesses = 64;
 /// Vertices that are looked at before some are measured, and how many then.
-constexpr std::uint32_t kLooksAtOnce = 256;
+constexpr std::uint32_t kLooksAtOnce = 128;
 constexpr std::uint32_t kFewGuesses = 2;
 /// Likely contacts that exceed the push by less, in delta, are not worth it.
 constexpr double kLikelyExcess = 0.01;
 /// Work units: vertices and regions that are looked at, and likely contacts that are compared with
 /// the push.
-constexpr std::uint32_t kLookedPerUnit = 2;
+constexpr std::uint32_t kLookedPerUnit = 8;
 constexpr std::uint32_t kScannedPerUnit = 64;
 
 struct HigherPriority {
@@ -107,8 +107,9 @@ void ContactSearch::look_and_measure() noexcept {
   MinQueue<std::uint32_t, HigherPriority> due(memory_.queue.first(collect_due()),
                                               HigherPriority{memory_.near});
   due.fill();
-  while (!due.empty() && pace_->go_on()) {
-    for (std::uint32_t of_part = 0; of_part < kLooksAtOnce && !due.empty() && pace_->go_on();
+  // A look takes less than a unit: the clock is read for each region.
+  while (!due.empty() && pace_->go_on_for(0)) {
+    for (std::uint32_t of_part = 0; of_part < kLooksAtOnce && !due.empty() && pace_->go_on_for(0);
          due.pop()) {
       NearRegion& item = memory_.near[due.top()];
       item.lower = raised_by_grid(item);
@@ -125,14 +126,16 @@ void ContactSearch::look_and_measure() noexcept {
 /// Regions that are due to be looked at, and what they promise.
 std::uint32_t ContactSearch::collect_due() noexcept {
   std::uint32_t due = 0;
-  for (std::uint32_t i = 0; i < near_ && pace_->go_on(); ++i) {
+  std::uint32_t bounded = 0;
+  for (std::uint32_t i = 0; i < near_; ++i) {
     NearRegion& item = memory_.near[i];
     LikelyContacts likely = likely_contacts(item.side);
     if (memory_.sides[item.side].likely.regions[item.region].never_looked()) {
+      if (!pace_->go_on_for(0)) continue;
       item.lower = raised_by_grid(item);
       likely.promise_by_distance(item.region, item.lower,
                                  sphere_of(memory_.views[item.side], item.region).radius);
-      pace_->charge(1);
+      if (++bounded % kLookedPerUnit == 0) pace_->charge(1);
     }
     if (!likely.is_due(item.region)) continue;
     item.priority = likely.promise(item.region);

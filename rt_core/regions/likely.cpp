@@ -16,7 +16,7 @@ constexpr double kTurnedAway = 0.05;
 /// One that is out of reach may come nearer so many times as fast as in the last tick, and no
 /// slower than this share of the way.
 constexpr double kFaster = 2;
-constexpr double kSlowest = 0.25;
+constexpr double kSlowest = 0.5;
 
 constexpr double kNothing = 1e300;
 
