@@ -188,8 +188,10 @@ void report_carrying(Engine& engine, const regions::ContactSearchResult& push,
   for (std::uint32_t i = 0; i < push.push.carrying_count; ++i) {
     const force::Carrying& carrying = push.push.carrying[i];
     Contact c = engine.search.contacts[carrying.index];
-    const bool near = c.distance_m < 0 || norm(c.point_a_m - c.point_b_m) < delta_m;
-    if (!near || found.contacts == engine.contacts.size()) continue;
+    const double apart_m = c.distance_m < 0 ? c.distance_m : norm(c.point_a_m - c.point_b_m);
+    if (apart_m >= delta_m || found.contacts == engine.contacts.size()) continue;
+    found.certificate.contact = ContactStatus::found;
+    if (apart_m < found.min_distance_m) found.min_distance_m = apart_m;
     c.weight = 2 * carrying.multiplier / (delta_m - c.distance_m);
     engine.contacts[found.contacts++] = c;
   }
