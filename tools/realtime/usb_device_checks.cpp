@@ -96,7 +96,12 @@ HostCheck usb_port(const fs::path& root) {
     const std::string hub = hub_of(name);
     append(found, ", ", name);
     const std::string others = hub.empty() ? "" : others_below(root, hub, name);
-    if (!others.empty()) append(shared, "; ", name + " shares the hub " + hub + " with " + others);
+    if (others.empty()) continue;
+    append(shared, "; ", name);
+    shared += " shares the hub ";
+    shared += hub;
+    shared += " with ";
+    shared += others;
   }
   return make_check("usb_port", shared.empty(),
                     !shared.empty()  ? shared
