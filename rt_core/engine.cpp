@@ -204,7 +204,7 @@ Found find_for_push(Engine& engine, const Budget& budget, Meter& meter,
                     force::PushWrench& push) noexcept {
   constexpr std::uint64_t kGuess[] = {3, 4};
   const Settings& s = engine.settings;
-  regions::ContactSearch search(engine.search, {s.delta_m, 0});
+  regions::ContactSearch search(engine.search, s.delta_m);
   Meter first(part_of(budget, kGuess[0], kGuess[1]), {});
   Pace first_pace(first);
   const bool guessed = search.guess(first_pace);

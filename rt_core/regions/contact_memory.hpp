@@ -93,16 +93,13 @@ struct ContactMemory {
 
 /// What a search has found.
 struct ContactSearchResult {
-  std::uint32_t contacts = 0;   ///< the first of ContactMemory::contacts
-  force::PushResult push;       ///< of their constraints, in metres
-  double strongest_m = 0;       ///< the largest strength of a contact
-  double error_m = 0;           ///< how far the push may be off, in length
-  double nearest_m = kUnknown;  ///< distance of the nearest points measured; below 0: of a vertex
-                                ///< that is inside
-  double lower_m = kUnknown;    ///< bound of the signed distance of what has not been measured
-  std::uint32_t likely = 0;     ///< the first of ContactMemory::likely
-  bool push_proved = false;     ///< nothing left changes the push by more than is tolerated
-  bool places_proved = false;   ///< nothing left changes where it acts
+  std::uint32_t contacts = 0;  ///< the first of ContactMemory::contacts
+  force::PushResult push;      ///< of their constraints, in metres
+  double strongest_m = 0;      ///< the largest strength of a contact
+  double error_m = 0;          ///< how far the push may be off, in length
+  std::uint32_t likely = 0;    ///< the first of ContactMemory::likely
+  bool push_proved = false;    ///< nothing left changes the push by more than is tolerated
+  bool places_proved = false;  ///< nothing left changes where it acts
   bool contacts_full = false;
 };
 

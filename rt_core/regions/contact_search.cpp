@@ -46,9 +46,9 @@ struct HigherPriority {
 
 }  // namespace
 
-ContactSearch::ContactSearch(ContactMemory& memory, const PushDemand& demand) noexcept
-    : memory_(memory), demand_(demand), measure_(memory, pace_, explanation_, out_) {
-  explanation_.delta_m = demand.delta_m;
+ContactSearch::ContactSearch(ContactMemory& memory, double delta_m) noexcept
+    : memory_(memory), measure_(memory, pace_, explanation_, out_) {
+  explanation_.delta_m = delta_m;
   ++memory_.tick;
 }
 
@@ -261,7 +261,6 @@ void ContactSearch::solve() noexcept {
   out_.push = force::least_push(constraints, {start, out_.push.carrying_count});
   pace_->charge(out_.contacts / kSolvedPerUnit);
   const force::Push& push = out_.push.push;
-  explanation_.negligible_m = force::tolerated_violation(push, 0.5 * demand_.tolerance_m);
   const bool same = push.vector == explanation_.push.vector &&
                     push.squeeze_diagonal == explanation_.push.squeeze_diagonal &&
                     push.squeeze_mixed == explanation_.push.squeeze_mixed &&
@@ -274,29 +273,19 @@ void ContactSearch::solve() noexcept {
 /// By how much what is not measured may change the push. Where the proof has not come to its end,
 /// by what the nearest may be against all directions.
 void ContactSearch::bound_error() noexcept {
-  const double lower_m = out_.lower_m = least_lower_m();
-  double excess_m = 0;
-  double stronger_m = 0;
-  if (out_.push_proved) {
-    excess_m = stronger_m = explanation_.negligible_m;
-  } else if (lower_m < contact::kReach * explanation_.delta_m) {
-    const double strength_m = explanation_.strength_of_distance(lower_m);
-    excess_m = strength_m + norm(out_.push.push.vector);
-    stronger_m = strength_m > out_.strongest_m ? strength_m - out_.strongest_m : 0;
-  }
-  // Those that are missing, and those that fade more the stronger the strongest is.
-  out_.error_m = force::push_error(out_.push.push, excess_m) +
-                 force::push_error(out_.push.push, force::kFadedShare * stronger_m);
-}
-
-/// Of what has not been measured.
-double ContactSearch::least_lower_m() const noexcept {
+  if (out_.push_proved) return;
   double lower_m = kUnknown;
   for (const NearRegion& item : memory_.near.first(near_)) {
     const double unmeasured_m = item.lower * memory_.views[item.side].unit_m;
     lower_m = unmeasured_m < lower_m ? unmeasured_m : lower_m;
   }
-  return lower_m;
+  if (lower_m >= contact::kReach * explanation_.delta_m) return;
+  const double strength_m = explanation_.strength_of_distance(lower_m);
+  const double excess_m = strength_m + norm(out_.push.push.vector);
+  const double stronger_m = strength_m > out_.strongest_m ? strength_m - out_.strongest_m : 0;
+  // Those that are missing, and those that fade more the stronger the strongest is.
+  out_.error_m = force::push_error(out_.push.push, excess_m) +
+                 force::push_error(out_.push.push, force::kFadedShare * stronger_m);
 }
 
 /// What is left open, and what carries.

@@ -16,17 +16,12 @@
 
 namespace palpate::regions {
 
-/// What is asked of a search.
-struct PushDemand {
-  double delta_m = 0;      ///< contact tolerance
-  double tolerance_m = 0;  ///< the push may be off by so much; 0: exact
-};
-
 /// One tick's search. Poses are set (levels::move). guess() comes first, then prove_push(), then
 /// prove_places() where the torque has to be exact, then conclude().
 class ContactSearch {
  public:
-  ContactSearch(ContactMemory& memory, const PushDemand& demand) noexcept;
+  /// @param delta_m  contact tolerance
+  ContactSearch(ContactMemory& memory, double delta_m) noexcept;
 
   /// Measures what carried in the tick before, and vertices that are likely to change the push
   /// (likely.hpp), those first that may change it most, until none is.
@@ -53,7 +48,6 @@ class ContactSearch {
   void measure(const ContactSource& source) noexcept;
   void measure_likely(std::uint32_t most) noexcept;
   const LikelyContact* most_violated() noexcept;
-  [[nodiscard]] double least_lower_m() const noexcept;
   double raised_by_grid(const NearRegion& item) noexcept;
   bool explain(double share, bool edges) noexcept;
   double excess_m(const NearRegion& item) const noexcept;
@@ -62,7 +56,6 @@ class ContactSearch {
   void bound_error() noexcept;
 
   ContactMemory& memory_;
-  PushDemand demand_;
   Pace* pace_ = nullptr;
   ContactSearchResult out_;
   Explanation explanation_;

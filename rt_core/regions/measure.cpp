@@ -33,9 +33,7 @@ double Explanation::strength_of_distance(double lower_m) const noexcept {
   return lower_m >= 0 ? delta_m - lower_m : delta_m - contact::kMostDetour * lower_m;
 }
 
-bool Explanation::is_open(double excess) const noexcept {
-  return excess > negligible_m + kNegligible * delta_m;
-}
+bool Explanation::is_open(double excess) const noexcept { return excess > kNegligible * delta_m; }
 
 double Explanation::explained_m(const SideView& view, Vec3d axis, double cosine) const noexcept {
   const Vec3d push_axis = cosine > -1 ? view.push_axis(axis) : Vec3d{};
@@ -245,7 +243,6 @@ void Measuring::vertex(std::uint32_t side, std::uint32_t index) noexcept {
       view.side, *pace_, index, hint_of(side, index), view.delta, *memory_.scratch);
   at.nearest = distance.foot.triangle;
   at.lower_until = distance.value + view.odometer;
-  out_.nearest_m = smaller(out_.nearest_m, distance.value * view.unit_m);
   take({side, index});
 }
 
@@ -281,7 +278,6 @@ void Measuring::take(const ContactSource& source) noexcept {
     c.point_b_m = view.points_of_a ? foot : point;
     c.normal = view.points_of_a ? normal : -normal;
     c.distance_m = found.distance * view.unit_m;
-    if (source.is_edge()) out_.nearest_m = smaller(out_.nearest_m, c.distance_m);
     c.centre_m = point - (0.5 * c.distance_m) * normal;
     c.share = found.weight;
     c.pair = view.pair;

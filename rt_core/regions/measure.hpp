@@ -14,8 +14,7 @@ class Explanation {
   double share = 1;   ///< of it that explains: 1 for the force, less for the torque
   bool edges = true;  ///< edges are measured too
   double delta_m = 0;
-  double strongest_m = 0;   ///< of the contacts known: what fades is weaker the stronger it is
-  double negligible_m = 0;  ///< what exceeds the push by no more may stay open
+  double strongest_m = 0;  ///< of the contacts known: what fades is weaker the stronger it is
 
   std::uint32_t version = 0;  ///< changes with the push and the share
 
