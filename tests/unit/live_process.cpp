@@ -115,8 +115,10 @@ TEST_F(LiveProcess, mouse_pulls_the_tool_against_the_other_within_the_limits) {
   if (!j["faults"].empty()) GTEST_SKIP() << "the machine is too busy to hold the loop up";
   EXPECT_GT(most_N, 0.02);
   EXPECT_LE(j["force_N"]["max"].get<double>(), 0.5 * (1 + 1e-9));
-  EXPECT_LT(least_m, -0.0002);  // it has come down,
-  EXPECT_GT(least_m, -0.004);   // and is held off
+  // It has come down from its gap of 0.2 mm, how far depends on how busy the machine is,
+  EXPECT_LT(least_m, -0.0001);
+  // and is held off.
+  EXPECT_GT(least_m, -0.004);
 }
 
 TEST_F(LiveProcess, mouse_without_a_page_is_a_usage_error) {
