@@ -64,8 +64,8 @@ struct MockHand {
 struct Scene {
   std::filesystem::path file;
   /// [engine] and [force]. Unlike the engine's own defaults the wrench is limited, for a scene may
-  /// drive a device, and right in overlap (docs/CONTACT.md).
-  Settings settings{.force_law = ForceLaw::least_push, .max_force_N = 3.0, .max_torque_Nm = 0.1};
+  /// drive a device.
+  Settings settings{.max_force_N = 3.0, .max_torque_Nm = 0.1};
   Limits limits;                ///< [limits]
   std::optional<double> kappa;  ///< absent: no such rule
   double max_memory_MB =

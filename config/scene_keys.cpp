@@ -14,7 +14,6 @@ constexpr double kMost = 1e18;
 constexpr std::string_view kEngines[] = {"levels", "regions"};
 constexpr std::string_view kBounds[] = {"tight", "paper"};
 constexpr std::string_view kOrders[] = {"deviation", "force"};
-constexpr std::string_view kForceLaws[] = {"penalty", "least_push"};
 constexpr std::string_view kCouplings[] = {"direct", "virtual"};
 constexpr std::string_view kRoles[] = {"tool", "moved", "fixed"};
 
@@ -34,7 +33,9 @@ constexpr Key<Scene> kEngineKeys[] = {
      "surfaces deviating by more than this share of `delta_m` are refined, whatever `s0` says; "
      "absent: `s0` alone decides"},
     {"exact", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.exact; }},
-     "refine everything nearer than `delta_m` to the original surface, whatever `s0` says"},
+     "`levels`: refine everything nearer than `delta_m` to the original surface, whatever `s0` "
+     "says; "
+     "`regions`: prove the force"},
     {"force_tolerance_N", "N",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.force_tolerance_N; }, 0, kMost},
      "`regions`: refinement ends once the certified error of the force is no more and it is known "
@@ -64,15 +65,9 @@ constexpr Key<Scene> kEngineKeys[] = {
 };
 
 constexpr Key<Scene> kForceKeys[] = {
-    {"law", "",
-     Choice<Scene>{kForceLaws,
-                   [](Scene& s, std::size_t i) { s.settings.force_law = static_cast<ForceLaw>(i); },
-                   [](const Scene& s) { return static_cast<std::size_t>(s.settings.force_law); }},
-     "`penalty`: a spring for each contact; `least_push` (`regions`): the smallest push that every "
-     "contact asks for, right in overlap too"},
     {"stiffness_N_per_m", "N/m",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.stiffness_N_per_m; }, 0, kMost},
-     "of the penalty force in any one direction, however many contacts push that way"},
+     "of the force in any one direction, however many contacts push that way"},
     {"cluster_radius_m", "m",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.cluster_radius_m; }, 0, kMost},
      "contacts nearer together than this count as one where the force is shared out"},

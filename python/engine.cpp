@@ -32,8 +32,7 @@ struct Choice {
 };
 constexpr Choice kChoices[] = {{"engine", &palpate_settings::engine, {"levels", "regions"}},
                                {"bounds", &palpate_settings::bounds, {"tight", "paper"}},
-                               {"order", &palpate_settings::order, {"deviation", "force"}},
-                               {"law", &palpate_settings::force_law, {"penalty", "least_push"}}};
+                               {"order", &palpate_settings::order, {"deviation", "force"}}};
 
 struct Flag {
   const char* name;

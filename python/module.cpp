@@ -94,10 +94,9 @@ Engine(images, pairs=None, tool=0, limits={}, **settings)
   tool      index of the body that the wrench acts on
   limits    {"nodes": n, "contacts": n, "clusters": n}, room for each
   settings  engine="levels" or "regions", delta_m, s0, kappa, exact, interpolate, bounds="tight" or
-            "paper", order="force" or "deviation", force_tolerance_N, law="penalty" or
-            "least_push", stiffness_N_per_m, cluster_radius_m, max_force_N, max_torque_Nm: as
-            [engine] and [force] of a scene, but the wrench is limited, and the least push taken,
-            only where it is said
+            "paper", order="force" or "deviation", force_tolerance_N, stiffness_N_per_m,
+            cluster_radius_m, max_force_N, max_torque_Nm: as [engine] and [force] of a scene, but
+            the wrench is limited only where it is said
 
 One thread at a time ticks an engine; others of Python's run meanwhile.)")
       .def(py::init<std::vector<std::shared_ptr<Image>>, const std::optional<Engine::Pairs>&,

@@ -35,7 +35,6 @@ struct Counters {
   std::uint64_t near_regions = 0;  ///< that may have been nearer than delta
   std::uint64_t searches = 0;      ///< of whole regions, completed
   std::uint64_t sweeps = 0;        ///< ticks after a jump: one pass over both trees
-  std::uint64_t follows = 0;       ///< ticks whose witnesses were followed
   // High-water marks of the pools.
   std::uint32_t most_nodes = 0;     ///< of Limits::nodes
   std::uint32_t most_waiting = 0;   ///< of Limits::nodes

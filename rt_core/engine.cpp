@@ -55,30 +55,11 @@ double least_error_m(std::span<const levels::PairState> pairs) noexcept {
   return deviation_m + kNumericalError * largest_unit_m(pairs);
 }
 
-template <class QueryResult>
-ContactStatus contact_status(const QueryResult& found, double delta_m) noexcept {
-  if (found.contacts > 0) return ContactStatus::found;
-  const bool open = found.unresolved_lower_m < delta_m || found.capped_gap_m > 0;
-  return open ? ContactStatus::undecided : ContactStatus::ruled_out;
-}
-
-/// What both queries say of their answer.
-template <class QueryResult>
-Certificate certify(const QueryResult& found, double upper_m, double delta_m,
-                    double least_error_m) noexcept {
-  Certificate c;
-  c.contact = contact_status(found, delta_m);
-  const double nearest =
-      found.contacts > 0 && found.min_distance_m < delta_m ? found.min_distance_m : delta_m;
-  const double below = found.unresolved_lower_m < nearest ? nearest - found.unresolved_lower_m : 0;
-  const double above = found.contacts > 0 && upper_m > nearest ? upper_m - nearest : 0;
-  c.error_bound_m = (below > above ? below : above) + found.capped_gap_m + least_error_m;
-  c.s_worst = found.s_worst;
-  c.truncated_by_time = found.truncated_by_time;
-  c.truncated_by_units = found.truncated_by_units;
-  c.truncated_by_memory = found.truncated_by_memory;
-  c.iteration_cap_met = found.iteration_cap_met;
-  return c;
+/// Whether there is a contact below delta.
+/// @param lower_m  bound of the distance of what has not been measured
+ContactStatus contact_status(bool found, double lower_m, double delta_m) noexcept {
+  if (found) return ContactStatus::found;
+  return lower_m < delta_m ? ContactStatus::undecided : ContactStatus::ruled_out;
 }
 
 /// What a query says of its answer, whichever engine found it.
@@ -92,6 +73,25 @@ struct Found {
   Certificate certificate;
 };
 
+Certificate certify_levels(const Engine& engine, const levels::QueryResult& found) noexcept {
+  const double delta_m = engine.settings.delta_m;
+  Certificate c;
+  const double lower_m = found.capped_gap_m > 0 ? 0 : found.unresolved_lower_m;
+  c.contact = contact_status(found.contacts > 0, lower_m, delta_m);
+  const double nearest =
+      found.contacts > 0 && found.min_distance_m < delta_m ? found.min_distance_m : delta_m;
+  const double below = found.unresolved_lower_m < nearest ? nearest - found.unresolved_lower_m : 0;
+  const double above = found.contacts > 0 && found.upper_m > nearest ? found.upper_m - nearest : 0;
+  c.error_bound_m =
+      (below > above ? below : above) + found.capped_gap_m + least_error_m(engine.states);
+  c.s_worst = found.s_worst;
+  c.truncated_by_time = found.truncated_by_time;
+  c.truncated_by_units = found.truncated_by_units;
+  c.truncated_by_memory = found.truncated_by_memory;
+  c.iteration_cap_met = found.iteration_cap_met;
+  return c;
+}
+
 Found find_by_levels(Engine& engine, Meter& meter) noexcept {
   const levels::QueryResult found =
       levels::query(engine.levels, rules_of(engine.settings), meter, engine.tally);
@@ -103,28 +103,7 @@ Found find_by_levels(Engine& engine, Meter& meter) noexcept {
           .min_distance_m = found.min_distance_m,
           .front_nodes = engine.levels.tree.front().size(),
           .queries = found.queries,
-          .certificate =
-              certify(found, found.upper_m, engine.settings.delta_m, least_error_m(engine.states))};
-}
-
-Found find_by_regions(Engine& engine, Meter& meter) noexcept {
-  const Settings& s = engine.settings;
-  regions::Demand demand;
-  demand.limited = meter.limited();
-  if (!s.exact && s.stiffness_N_per_m > 0) {
-    demand.tolerance_m = s.force_tolerance_N / s.stiffness_N_per_m;
-  }
-  const regions::QueryResult found = regions::query(engine.regions, demand, meter, engine.tally);
-  Found out{.contacts = found.contacts,
-            .tail_contacts = regions::tail_contacts(found.contacts, found.crossings),
-            .min_distance_m = found.min_distance_m,
-            .front_nodes = found.near_regions,
-            .queries = found.queries,
-            .certificate = certify(found, found.maybe_apart ? s.delta_m : found.min_distance_m,
-                                   s.delta_m, least_error_m(engine.states))};
-  out.certificate.force_bound_N = s.stiffness_N_per_m * found.open_m;
-  out.certificate.on_reserve = found.on_reserve;
-  return out;
+          .certificate = certify_levels(engine, found)};
 }
 
 /// So much of a budget, from now on.
@@ -153,12 +132,12 @@ std::size_t add_likely_places(Engine& engine, const regions::ContactSearchResult
   for (std::uint32_t i = 0; i < found.likely; i += stride) {
     const regions::LikelyContact& c = search.likely[i];
     if (count == engine.push_points.size()) break;
-    if (search.sides[c.side].vertices[c.vertex].measured_tick == search.tick) continue;
+    if (c.source.is_edge() || search.is_measured(c.source)) continue;
     const Vec3d normal = vec_cast<double>(c.push);
     const double strength_m = static_cast<double>(c.strength_m);
     if (strength_m <= force::kTakesPart * found.push.push.along(normal)) continue;
-    const regions::SideView& view = search.views[c.side];
-    const Vec3d point = view.side.to_target(contact::position(view.side.points, c.vertex));
+    const regions::SideView& view = search.views[c.source.side];
+    const Vec3d point = view.side.to_target(contact::position(view.side.points, c.source.item));
     search.constraints[count] = {normal, strength_m};
     engine.push_points[count].arm_m = view.world(point) - engine.poses[engine.tool].position_m;
     ++count;
@@ -180,57 +159,140 @@ force::PushWrench wrench_of(Engine& engine, const regions::ContactSearchResult& 
                             engine.force.places);
 }
 
-/// Adds those contacts that carry the push to the others, which carry nothing.
-void report_carrying(Engine& engine, const regions::ContactSearchResult& push,
-                     Found& found) noexcept {
+/// Adds contacts of a search that are nearer than delta to those of the minima: those that carry,
+/// and the nearest points where there are none, or something is inside and crosses nothing.
+/// @return how many are reported then
+std::uint32_t report(const Engine& engine, const regions::ContactSearchResult& found,
+                     const regions::MinimaResult& minima) noexcept {
   const double delta_m = engine.settings.delta_m;
-  for (Contact& c : engine.contacts.first(found.contacts)) c.weight = 0;
-  for (std::uint32_t i = 0; i < push.push.carrying_count; ++i) {
-    const force::Carrying& carrying = push.push.carrying[i];
-    Contact c = engine.search.contacts[carrying.index];
-    const double apart_m = c.distance_m < 0 ? c.distance_m : norm(c.point_a_m - c.point_b_m);
-    if (apart_m >= delta_m || found.contacts == engine.contacts.size()) continue;
-    found.certificate.contact = ContactStatus::found;
-    if (apart_m < found.min_distance_m) found.min_distance_m = apart_m;
-    c.weight = 2 * carrying.multiplier / (delta_m - c.distance_m);
-    engine.contacts[found.contacts++] = c;
+  std::uint32_t count = minima.contacts;
+  const auto add = [&](Contact c, double multiplier) {
+    if (c.distance_m >= delta_m) return;
+    const double apart_m = norm(c.point_a_m - c.point_b_m);
+    c.distance_m = c.distance_m < 0 ? -apart_m : apart_m;
+    if (c.distance_m >= delta_m || count == engine.contacts.size()) return;
+    c.weight = 2 * multiplier / (delta_m - c.distance_m);
+    engine.contacts[count++] = c;
+  };
+  for (const force::Carrying& c : found.push.carrying_contacts()) {
+    add(engine.search.contacts[c.index], c.multiplier);
   }
+  const bool contained = found.nearest.distance_m < 0 && minima.min_distance_m > 0;
+  if (count == 0 || contained) add(found.nearest, 0);
+  return count;
 }
 
-/// The force by the least push; distances and their certificate by the minima of all regions. What
-/// is likely comes first, with three quarters of the budget at most; then the minima; proof that
-/// nothing else changes the force is for exact queries.
-Found find_for_push(Engine& engine, const Budget& budget, Meter& meter,
-                    force::PushWrench& push) noexcept {
+double least_distance_m(std::span<const Contact> contacts) noexcept {
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const Contact& c : contacts) least_m = c.distance_m < least_m ? c.distance_m : least_m;
+  return least_m;
+}
+
+/// Of distances: the nearest found, and a bound of what has not been looked at.
+void certify_distance(const Engine& engine, double nearest_m, double lower_m,
+                      Certificate& c) noexcept {
+  const double delta_m = engine.settings.delta_m;
+  c.contact = contact_status(nearest_m < delta_m, lower_m, delta_m);
+  const double nearest = nearest_m < delta_m ? nearest_m : delta_m;
+  c.error_bound_m = (lower_m < nearest ? nearest - lower_m : 0) + least_error_m(engine.states);
+}
+
+/// @param proved  all that is asked for
+void certify_push(const Engine& engine, const regions::ContactSearchResult& found, bool proved,
+                  const Pace& pace, Certificate& c) noexcept {
+  const double least_m = least_error_m(engine.states);
+  const double farthest_m = engine.settings.delta_m + least_m;
+  const bool near = found.nearest.distance_m < farthest_m || found.lower_m < farthest_m;
+  const double error_m = found.error_m + (near ? least_m : 0);
+  c.force_bound_N = 2 * engine.settings.stiffness_N_per_m * error_m;
+  c.truncated_by_memory |= found.contacts_full;
+  c.iteration_cap_met |= found.push.status != force::PushStatus::solved;
+  if (found.contacts_full || proved) return;
+  c.truncated_by_time |= pace.time_ended();
+  c.truncated_by_units |= !pace.time_ended();
+}
+
+/// Distances, proved: the minima of all regions, and whether anything is inside, of which they tell
+/// nothing.
+struct Distances {
+  regions::MinimaResult minima;
+  bool outside = false;                            ///< nothing is inside
+  bool ended = false;                              ///< by the budget
+  [[nodiscard]] double lower_m() const noexcept {  ///< overlap counts as 0
+    return outside ? minima.unresolved_lower_m : 0;
+  }
+};
+
+Distances find_distances(Engine& engine, regions::ContactSearch& search, Meter& meter,
+                         Pace& pace) noexcept {
+  Distances out{regions::find_minima(engine.minima, meter, engine.tally)};
+  out.outside = search.see_components(pace);
+  out.ended = !pace.go_on();
+  return out;
+}
+
+/// The force by the least push: a guess, with three quarters of a budget at most; the distances of
+/// all regions, which also tell what edges touch; then as much proof as is asked for or cheap,
+/// which does for a few hundred triangles. Without stiffness an exact query asks for distances
+/// alone.
+Found find_by_regions(Engine& engine, const Budget& budget, Meter& meter,
+                      force::PushWrench& push) noexcept {
+  constexpr std::uint64_t kCheapProof = 500;  // units
   constexpr std::uint64_t kGuess[] = {3, 4};
   const Settings& s = engine.settings;
-  regions::ContactSearch search(engine.search, s.delta_m);
+  const double k = s.stiffness_N_per_m;
+  const bool felt = k > 0 || !s.exact;
+  const double tolerance_m = !s.exact && k > 0 ? s.force_tolerance_N / (2 * k) : 0;
+  regions::ContactSearch search(engine.search, {s.delta_m, tolerance_m});
   Meter first(part_of(budget, kGuess[0], kGuess[1]), {});
   Pace first_pace(first);
-  const bool guessed = search.guess(first_pace);
+  if (felt) search.guess(first_pace);
   meter.charge(first.used());
   meter.expect_contacts(search.contacts());
-  Found out = find_by_regions(engine, meter);
+  engine.tally.lap(Stage::start, meter);
   Pace pace(meter);
-  if (s.exact) {
-    search.prove_push(pace);
-    search.prove_places(pace);
+  Distances distances = find_distances(engine, search, meter, pace);
+  const bool found_any = distances.minima.contacts > 0 || search.nearest_m() < s.delta_m;
+  const bool on_reserve =
+      distances.ended && !found_any && distances.lower_m() < s.delta_m && meter.has_reserve();
+  if (on_reserve) {
+    meter.draw_on_reserve();
+    pace.resume();
+    distances = find_distances(engine, search, meter, pace);
   }
+  const regions::MinimaResult& minima = distances.minima;
+  if (felt) {
+    search.see_minima(pace, engine.contacts.first(minima.contacts), engine.minima.edges);
+    if (!s.exact && tolerance_m == 0) pace.limit(kCheapProof);
+    search.prove_push(pace);
+    if (tolerance_m == 0) search.prove_places(pace);
+    pace.no_limit();
+  }
+  const std::uint64_t used = meter.used();
+  meter.begin_tail();
+  engine.tally.lap(Stage::refine, meter.refined_ns());
   const regions::ContactSearchResult& found = search.conclude();
   push = wrench_of(engine, found, meter);
-  report_carrying(engine, found, out);
-  out.clusters = found.push.carrying_count;
-  out.tail_contacts += search.contacts();
+  const std::uint32_t contacts = report(engine, found, minima);
+  const double nearest_m = least_distance_m(engine.contacts.first(contacts));
+  Found out{.contacts = contacts,
+            .clusters = found.push.carrying_count,
+            .tail_contacts = found.contacts + found.likely,
+            .min_distance_m = nearest_m,
+            .front_nodes = minima.near_regions,
+            .queries = used,
+            .certificate = {}};
   Certificate& c = out.certificate;
-  c.force_bound_N = 2 * s.stiffness_N_per_m * (found.error_m + least_error_m(engine.states));
-  c.truncated_by_memory |= found.contacts_full || push.places_full;
-  c.iteration_cap_met |= found.push.status != force::PushStatus::solved;
-  if (!(s.exact ? found.places_proved : guessed) && !found.contacts_full) {
-    const bool by_units = meter.out_of_units() || first.out_of_units();
-    c.truncated_by_units |= by_units;
-    c.truncated_by_time |= !by_units;
+  c.s_worst = minima.s_worst;
+  c.truncated_by_time = minima.truncated_by_time;
+  c.truncated_by_units = minima.truncated_by_units;
+  c.truncated_by_memory =
+      minima.truncated_by_memory || push.places_full || out.contacts == engine.contacts.size();
+  c.on_reserve = on_reserve;
+  certify_distance(engine, nearest_m, distances.lower_m(), c);
+  if (felt) {
+    certify_push(engine, found, tolerance_m > 0 ? found.push_proved : found.places_proved, pace, c);
   }
-  out.queries = meter.used();
   return out;
 }
 
@@ -250,15 +312,14 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
   Meter meter(budget, engine.tail);
   engine.tally.begin_tick();
   Found found;
-  if (settings.engine == EngineKind::regions && settings.force_law == ForceLaw::least_push) {
+  if (settings.engine == EngineKind::regions) {
     force::PushWrench push;
-    found = find_for_push(engine, budget, meter, push);
+    found = find_by_regions(engine, budget, meter, push);
     out.wrench = force::limited(push.wrench, settings);
     out.stiffness = push.stiffness;
     out.clusters = found.clusters;
   } else {
-    found = settings.engine == EngineKind::levels ? find_by_levels(engine, meter)
-                                                  : find_by_regions(engine, meter);
+    found = find_by_levels(engine, meter);
     const force::Penalty penalty =
         force::penalty(engine.contacts.first(found.contacts), engine.pairs, engine.tool,
                        engine.poses[engine.tool], settings, engine.force);

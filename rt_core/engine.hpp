@@ -11,7 +11,7 @@
 #include "rt_core/levels/levels_engine.hpp"
 #include "rt_core/palpate_rt.hpp"
 #include "rt_core/regions/contact_search.hpp"
-#include "rt_core/regions/regions_engine.hpp"
+#include "rt_core/regions/minima.hpp"
 
 namespace palpate {
 
@@ -25,8 +25,8 @@ class Engine {
   std::span<Pose> poses;                // of this tick, normalised
   std::span<levels::PairState> states;  // [pairs]
   levels::QueryMemory levels;           // of the engine's kind; the other is empty
-  regions::QueryMemory regions;
-  regions::ContactMemory search;  // of the regions engine with the least push
+  regions::ContactMemory search;
+  regions::MinimaMemory minima;
   std::span<Contact> contacts;
   std::span<force::PushPoint> push_points;  // [search.contacts]
   force::Workspace force;

@@ -52,7 +52,6 @@ typedef struct palpate_scene {
 enum { PALPATE_LEVELS = 0, PALPATE_REGIONS = 1 };
 enum { PALPATE_BOUNDS_TIGHT = 0, PALPATE_BOUNDS_PAPER = 1 };
 enum { PALPATE_BY_DEVIATION = 0, PALPATE_BY_FORCE = 1 };
-enum { PALPATE_PENALTY = 0, PALPATE_LEAST_PUSH = 1 };
 
 /* Start from palpate_default_settings(): fields are only ever added. */
 typedef struct palpate_settings {
@@ -69,7 +68,6 @@ typedef struct palpate_settings {
   double cluster_radius_m;
   double max_force_N;
   double max_torque_Nm;
-  uint32_t force_law; /* regions engine; levels has the penalty alone */
 } palpate_settings;
 
 typedef struct palpate_limits {

@@ -64,8 +64,7 @@ Limits limits_of(const palpate_limits& from) noexcept {
 /// False where an enumeration is out of range.
 bool settings_of(const palpate_settings& from, Settings& out) noexcept {
   if (from.engine > PALPATE_REGIONS || from.exact > 1 || from.interpolate > 1 ||
-      from.bounds > PALPATE_BOUNDS_PAPER || from.order > PALPATE_BY_FORCE ||
-      from.force_law > PALPATE_LEAST_PUSH) {
+      from.bounds > PALPATE_BOUNDS_PAPER || from.order > PALPATE_BY_FORCE) {
     return false;
   }
   out.engine = static_cast<EngineKind>(from.engine);
@@ -81,7 +80,6 @@ bool settings_of(const palpate_settings& from, Settings& out) noexcept {
   out.cluster_radius_m = from.cluster_radius_m;
   out.max_force_N = from.max_force_N;
   out.max_torque_Nm = from.max_torque_Nm;
-  out.force_law = static_cast<ForceLaw>(from.force_law);
   return true;
 }
 
@@ -205,8 +203,7 @@ void palpate_default_settings(palpate_settings* out) {
           s.stiffness_N_per_m,
           s.cluster_radius_m,
           s.max_force_N,
-          s.max_torque_Nm,
-          static_cast<std::uint32_t>(s.force_law)};
+          s.max_torque_Nm};
 }
 
 void palpate_default_limits(palpate_limits* out) {

@@ -39,7 +39,8 @@ struct Scene {
 /// The contact query.
 enum class EngineKind : std::uint8_t {
   levels,   ///< the paper's: convex pieces, simplified where it cannot be felt
-  regions,  ///< certified bounds of the distance of regions of a's original surface from b
+  regions,  ///< the least push on contacts of both original surfaces (docs/CONTACT.md), with
+            ///< certified distances of regions of a from b
 };
 
 /// What bounds the original surface below a pair of pieces (levels engine).
@@ -55,12 +56,6 @@ enum class Order : std::uint8_t {
               ///< a distance up to the contact known there, or to delta
 };
 
-/// How contacts become a force.
-enum class ForceLaw : std::uint8_t {
-  penalty,     ///< a spring for each contact, shared where contacts push in nearly one direction
-  least_push,  ///< the smallest push that every contact asks for (docs/CONTACT.md); regions engine
-};
-
 /// How contacts are found and turned into forces.
 struct Settings {
   EngineKind engine = EngineKind::levels;  ///< fixed when the engine is made
@@ -71,18 +66,21 @@ struct Settings {
   /// Surface deviation allowed, relative to delta: pieces with s > kappa * delta are refined,
   /// whatever s0 says; this bounds the error of force. >= 0; infinity: no such rule.
   double kappa = std::numeric_limits<double>::infinity();
-  bool exact = false;  ///< refine every pair below delta to the original surface, whatever s0 says
+  /// Levels engine: refine every pair below delta to the original surface, whatever s0 says.
+  /// Regions engine: prove the wrench, and report the least distance of every region below delta.
+  bool exact = false;
   Bounds bounds = Bounds::tight;
   /// Without a budget it changes nothing.
   Order order = Order::force;
   bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
 
-  ForceLaw force_law = ForceLaw::penalty;  ///< regions engine; levels has the penalty alone
-
-  /// Regions engine: refinement may end once the certified error of the force is no more; 0: exact.
-  /// Whether two bodies touch is decided all the same, as far as a budget goes.
+  /// Regions engine: a tick that is not exact goes on until the certified error of the force is no
+  /// more; 0: until nothing that is likely to change it is left, and what is cheap to prove is
+  /// proved. Whether two bodies touch is decided all the same, as far as a budget goes.
   double force_tolerance_N = 0;
-  double stiffness_N_per_m = 600.0;  ///< of the penalty force in any one direction; >= 0
+  /// Of the force in any one direction, >= 0. Regions engine: with 0, exact queries give distances
+  /// alone.
+  double stiffness_N_per_m = 600.0;
   /// Contacts nearer together than this count as one where the force is shared out (Places); it
   /// acts on the torque alone. >= 0; 0: every contact counts.
   double cluster_radius_m = 0.003;
@@ -96,14 +94,13 @@ struct Settings {
 struct Limits {
   std::uint32_t nodes = 1u << 17;     ///< nodes of the bounding volume test tree over all pairs
   std::uint32_t contacts = 1u << 14;  ///< contacts of one tick over all pairs (regions engine: no
-                                      ///< more than one for each region, and 16 a pair for
-                                      ///< components deep inside, take memory)
+                                      ///< more than 8 for each vertex and 2 for each convex edge
+                                      ///< take memory)
   std::uint32_t clusters = 1u << 12;  ///< grid points of cluster_radius_m near contacts of one tick
 };
 
 /// What one tick may spend. Refinement ends at whichever limit is met first; the answer is valid
-/// all the same. However early the deadline, the regions engine searches for 64 units a tick (a few
-/// microseconds), so that contacts are found in the end.
+/// all the same.
 struct Budget {
   std::uint64_t units = std::numeric_limits<std::uint64_t>::max();  ///< see TickResult::queries
   std::uint64_t (*clock_ns)(void* context) = nullptr;  ///< a monotonic clock, or null: units only
@@ -119,27 +116,23 @@ struct Budget {
   std::uint64_t reserve_ns = 0;
 };
 
-/// A pair of closest points of two pieces nearer than delta. World axes.
+/// Two points of the bodies that are nearer than delta, or overlap. World axes.
 ///
-/// Where the pieces overlap, point_b_m - point_a_m leads out along the normal, about as far as
-/// the overlap is deep. The levels engine gives points of the pieces' hulls or, where a second way
-/// out counts, points between those of the two ways, inside them; the regions engine gives points
-/// about the middle of the curve in which the surfaces cross (regions/crossing.hpp). Neither need
-/// lie on a surface.
+/// Where they overlap, the levels engine gives points of the pieces' hulls or, where a second way
+/// out counts, points between those of the two ways: they need not lie on a surface. The regions
+/// engine gives a vertex of one body and its foot on the other, or two points of edges.
 struct Contact {
   Vec3d point_a_m{};  ///< on the surface of body a
   Vec3d point_b_m{};  ///< on the surface of body b
   /// Where its force acts: midway between the two points or, where wide pieces meet at their faces
   /// (levels engine), beside that, at the centre of pressure (convex/pressure.hpp).
   Vec3d centre_m{};
-  /// Unit, from b to a; of an overlap the way that parts the surfaces; on the border of a region
-  /// (regions engine) turned toward a normal that both surfaces have (regions/border.hpp).
+  /// Unit, from b to a; of an overlap the way that parts the surfaces. Regions engine: of the
+  /// normals that the surface has there, the nearest to that.
   Vec3d normal{};
   double distance_m = 0;  ///< of the points; signed: negative where the pieces overlap
-  /// 0 to 1: so much of its depth below delta is felt. Less than all in the regions engine only: on
-  /// the border of a region beside which the surface goes on nearer; of an overlap that others of
-  /// the same pieces lead out of sooner; and of what comes or goes where a budget of time does not
-  /// do for reporting all contacts (regions/crowd.hpp).
+  /// 0 to 1: how far the surfaces face each other there (docs/CONTACT.md, w). Regions engine; the
+  /// levels engine has 1.
   double share = 1;
   /// Its force on the tool is weight * stiffness * (delta - distance) along the normal.
   double weight = 0;
@@ -161,20 +154,18 @@ struct Certificate {
   ContactStatus contact = ContactStatus::undecided;
   double error_bound_m = 0;  ///< the true least distance is within this of the reported one; where
                              ///< no contact is reported, of delta. It counts what detail was left
-                             ///< out before baking (Header::source_deviation_rel). Regions engine:
-                             ///< overlap counts as 0; where the budget ended a tick nothing is
-                             ///< said of how deep it is, but where that may be none it is counted
+                             ///< out before baking (Header::source_deviation_rel)
   double s_worst =
       0;  ///< largest weighted surface deviation left unrefined, relative to the radius
-  /// Regions engine: the sizes of the regions' penalty forces, summed, are within this of the true
-  /// ones: stiffness times the sum of all open intervals below delta, each wider by what was left
-  /// out of both bodies before baking, of which no tolerance takes account. What there was no time
-  /// to report is covered; depths of overlap, and what else has a Contact::share, are not. With the
-  /// least push: how far the force is off at most, before limits (force/least_push.hpp).
+  /// Regions engine: how far the force is off at most, before limits (force/least_push.hpp). It
+  /// counts what detail was left out of both bodies before baking, of which no tolerance takes
+  /// account.
   double force_bound_N = 0;
   std::uint64_t units_used = 0;
-  bool truncated_by_time = false;    ///< the clock ended refinement
-  bool truncated_by_units = false;   ///< the work units ended refinement
+  bool truncated_by_time = false;  ///< the clock ended refinement
+  /// The work units ended refinement. Regions engine: or not all is proved, of which a tick that is
+  /// neither exact nor has a tolerance takes on a few hundred units.
+  bool truncated_by_units = false;
   bool truncated_by_memory = false;  ///< nodes, contacts or clusters were used up
   bool iteration_cap_met = false;    ///< a convex query gave its best so far
   bool on_reserve = false;           ///< it went on for a first contact (Budget::reserve_units)
@@ -185,9 +176,10 @@ struct Certificate {
 
 struct TickResult {
   Wrench wrench;  ///< on the tool, world axes, torque about the origin of the tool's body frame
-  /// How the wrench falls as the tool moves by a small twist, with shares and normals held: k times
-  /// the sum of share_i J_i^T J_i, J_i = [n_i | r_i x n_i]; positive semidefinite, before limits.
-  /// With it a faster loop may render between ticks: wrench - stiffness * (twist since the tick).
+  /// How the wrench falls as the tool moves by a small twist, with shares and normals held; J_i =
+  /// [n_i | r_i x n_i]. Levels: k times the sum of share_i J_i^T J_i. Regions: 2 k J^T M^-1 J of
+  /// the contacts that carry, M their Gram matrix. Positive semidefinite, before limits. With it a
+  /// faster loop may render between ticks: wrench - stiffness * (twist since the tick).
   Matrix6 stiffness;
   std::span<const Contact> contacts;  ///< valid until the next tick; order is deterministic
   std::uint32_t clusters = 0;  ///< directions that are felt: how often the stiffness is, rounded

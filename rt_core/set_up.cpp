@@ -16,11 +16,10 @@ bool at_least(double v, double least) noexcept { return v >= least; }  // false 
 bool sound(const Settings& s) noexcept {
   return finite(s.delta_m) && s.delta_m > 0 && finite(s.s0) && at_least(s.s0, 0) &&
          at_least(s.kappa, 0) && s.bounds <= Bounds::paper && s.order <= Order::force &&
-         s.force_law <= ForceLaw::least_push && finite(s.stiffness_N_per_m) &&
-         at_least(s.stiffness_N_per_m, 0) && finite(s.cluster_radius_m) &&
-         at_least(s.cluster_radius_m, 0) && finite(s.force_tolerance_N) &&
-         at_least(s.force_tolerance_N, 0) && at_least(s.max_force_N, 0) &&
-         at_least(s.max_torque_Nm, 0);
+         finite(s.stiffness_N_per_m) && at_least(s.stiffness_N_per_m, 0) &&
+         finite(s.cluster_radius_m) && at_least(s.cluster_radius_m, 0) &&
+         finite(s.force_tolerance_N) && at_least(s.force_tolerance_N, 0) &&
+         at_least(s.max_force_N, 0) && at_least(s.max_torque_Nm, 0);
 }
 
 bool sound(const Scene& scene, const Limits& limits) noexcept {
@@ -57,19 +56,14 @@ struct Layout {
   std::span<convex::PressureScratch> pressure;
   // Regions engine.
   std::span<regions::PairFrame> frames;
-  std::span<regions::Containment> containment;
-  std::span<std::uint32_t> first_state, queue;
-  std::span<std::uint64_t> turns;
+  std::span<std::uint32_t> first_state, queue, edges;
   std::span<regions::RegionState> regions;
   std::span<regions::Witness> witnesses;
   std::span<regions::RegionPairs> kept;
   std::span<regions::Active> active;
-  std::span<regions::WayOut> ways_out;
-  std::span<float> swept, absence;
-  std::span<double> lasting, scouted;
+  std::span<float> swept;
+  std::span<double> lasting;
   std::span<regions::SearchScratch> search;
-  std::span<regions::CrossingScratch> crossing;
-  std::span<regions::Unfinished> unfinished;
   // The search for the least push.
   std::span<Contact> measured;
   std::span<force::PushConstraint> constraints;
@@ -101,17 +95,6 @@ std::size_t regions_of(const Scene& scene) noexcept {
   return all;
 }
 
-/// What limits ask for, but a region has one contact at most, and so has a component that is deep
-/// inside; and what carries the push.
-std::size_t contacts_for(const Scene& scene, const Limits& limits, EngineKind kind) noexcept {
-  if (kind == EngineKind::levels) return limits.contacts;
-  std::size_t most = force::kMostCarrying;
-  for (const BodyPair& pair : scene.pairs) {
-    most += regions_of(scene, pair) + regions::kMostContained;
-  }
-  return smaller(limits.contacts, most);
-}
-
 /// What both sides of all pairs need.
 struct SideCounts {
   std::size_t regions = 0, vertices = 0, edges = 0;
@@ -128,6 +111,15 @@ SideCounts sides_of(const Scene& scene) noexcept {
   return out;
 }
 
+/// What limits ask for, but no more than vertices and edges usually have.
+std::size_t contacts_for(const Scene& scene, const Limits& limits, EngineKind kind) noexcept {
+  if (kind == EngineKind::levels) return limits.contacts;
+  const SideCounts counts = sides_of(scene);
+  constexpr std::size_t kOfVertex = 8;
+  constexpr std::size_t kOfEdge = 2;
+  return smaller(limits.contacts, kOfVertex * counts.vertices + kOfEdge * counts.edges);
+}
+
 void lay_out_levels(Arena& arena, const Limits& limits, Layout& out) noexcept {
   out.nodes = arena.array<levels::Node>(limits.nodes);
   out.front = arena.array<std::uint32_t>(limits.nodes);
@@ -136,18 +128,17 @@ void lay_out_levels(Arena& arena, const Limits& limits, Layout& out) noexcept {
   out.stopped = arena.array<std::uint32_t>(limits.nodes);
   out.scratch = arena.array<convex::PenetrationScratch>(1);
   out.pressure = arena.array<convex::PressureScratch>(1);
-}
-
-/// What limits ask for, but no more than vertices and edges usually have.
-std::size_t measured_for(const SideCounts& counts, const Limits& limits) noexcept {
-  constexpr std::size_t kOfVertex = 8;
-  constexpr std::size_t kOfEdge = 2;
-  return smaller(limits.contacts, kOfVertex * counts.vertices + kOfEdge * counts.edges);
+  out.felt = arena.array<force::Felt>(limits.contacts);
+  out.ranking = arena.array<force::Ranked>(limits.contacts);
+  out.cells = arena.array<force::DeepCells>(1);
+  // Contacts that are nobody's copies have corners of their own.
+  out.copies = arena.array<force::Place>(
+      smaller(force::Spot::kCorners * limits.contacts, force::Places::room_for(limits.contacts)));
 }
 
 void lay_out_search(Arena& arena, const Scene& scene, const Limits& limits, Layout& out) noexcept {
   const SideCounts counts = sides_of(scene);
-  const std::size_t contacts = measured_for(counts, limits);
+  const std::size_t contacts = contacts_for(scene, limits, EngineKind::regions);
   out.measured = arena.array<Contact>(contacts);
   out.constraints = arena.array<force::PushConstraint>(contacts);
   out.push_points = arena.array<force::PushPoint>(contacts);
@@ -170,22 +161,16 @@ void lay_out_regions(Arena& arena, const Scene& scene, Layout& out) noexcept {
   std::size_t most = 0;
   for (const BodyPair& pair : scene.pairs) most = larger(most, regions_of(scene, pair));
   out.frames = arena.array<regions::PairFrame>(scene.pairs.size());
-  out.containment = arena.array<regions::Containment>(scene.pairs.size());
   out.first_state = arena.array<std::uint32_t>(scene.pairs.size());
   out.regions = arena.array<regions::RegionState>(all);
   out.witnesses = arena.array<regions::Witness>(all);
   out.kept = arena.array<regions::RegionPairs>(all);
   out.active = arena.array<regions::Active>(all);
   out.queue = arena.array<std::uint32_t>(all);
-  out.turns = arena.array<std::uint64_t>(all);
-  out.ways_out = arena.array<regions::WayOut>(regions::ways_out_for(all));
+  out.edges = arena.array<std::uint32_t>(all);
   out.swept = arena.array<float>(most);
   out.lasting = arena.array<double>(all);
-  out.scouted = arena.array<double>(all);
-  out.absence = arena.array<float>(all);
   out.search = arena.array<regions::SearchScratch>(1);
-  out.crossing = arena.array<regions::CrossingScratch>(1);
-  out.unfinished = arena.array<regions::Unfinished>(1);
 }
 
 Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKind kind) noexcept {
@@ -195,12 +180,6 @@ Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKin
   out.poses = arena.array<Pose>(scene.bodies.size());
   const std::size_t contacts = contacts_for(scene, limits, kind);
   out.contacts = arena.array<Contact>(contacts);
-  out.felt = arena.array<force::Felt>(contacts);
-  out.ranking = arena.array<force::Ranked>(contacts);
-  out.cells = arena.array<force::DeepCells>(1);
-  // Contacts that are nobody's copies have corners of their own.
-  out.copies = arena.array<force::Place>(
-      smaller(force::Spot::kCorners * limits.contacts, force::Places::room_for(contacts)));
   out.places = arena.array<force::Place>(limits.clusters);
   if (kind == EngineKind::levels) {
     lay_out_levels(arena, limits, out);
@@ -265,31 +244,25 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.force.cells = layout.cells.data();
   e.force.copies.attach(layout.copies);
   e.force.places.attach(layout.places);
-  e.levels.pairs = e.regions.pairs = layout.states;
-  e.levels.contacts = e.regions.contacts = layout.contacts;
+  e.levels.pairs = e.minima.pairs = layout.states;
+  e.levels.contacts = e.minima.contacts = layout.contacts;
   e.levels.tree.attach(layout.nodes, layout.front, layout.blending);
   e.levels.waiting = layout.waiting;
   e.levels.stopped = layout.stopped;
   e.levels.scratch = layout.scratch.data();
   e.levels.pressure = layout.pressure.data();
-  e.regions.kernels = &regions::best_kernels();
-  e.regions.frames = layout.frames;
-  e.regions.containment = layout.containment;
-  e.regions.first_state = layout.first_state;
-  e.regions.states = layout.regions;
-  e.regions.witnesses = layout.witnesses;
-  e.regions.kept = layout.kept;
-  e.regions.active = layout.active;
-  e.regions.queue = layout.queue;
-  e.regions.turns = layout.turns;
-  e.regions.ways_out = layout.ways_out;
-  e.regions.swept = layout.swept;
-  e.regions.lasting = layout.lasting;
-  e.regions.scouted = layout.scouted;
-  e.regions.crowd.absence = layout.absence;
-  e.regions.search = layout.search.data();
-  e.regions.crossing = layout.crossing.data();
-  e.regions.unfinished = layout.unfinished.data();
+  e.minima.kernels = &regions::best_kernels();
+  e.minima.frames = layout.frames;
+  e.minima.first_state = layout.first_state;
+  e.minima.states = layout.regions;
+  e.minima.witnesses = layout.witnesses;
+  e.minima.kept = layout.kept;
+  e.minima.active = layout.active;
+  e.minima.queue = layout.queue;
+  e.minima.edges = layout.edges;
+  e.minima.swept = layout.swept;
+  e.minima.lasting = layout.lasting;
+  e.minima.search = layout.search.data();
   attach_search(layout, scene, e);
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
     attach(layout.states[i], scene, scene.pairs[i]);
@@ -316,8 +289,7 @@ void begin_levels(levels::QueryMemory& memory) noexcept {
   }
 }
 
-void begin_regions(const Scene& scene, regions::QueryMemory& memory) noexcept {
-  memory.unfinished->drop();
+void begin_regions(const Scene& scene, regions::MinimaMemory& memory) noexcept {
   std::uint32_t first = 0;
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
     memory.first_state[i] = first;
@@ -354,8 +326,8 @@ bool all_fine_enough(const Engine& engine, const Settings& settings) noexcept {
 bool serves(const ImageView& image, const Settings& settings) noexcept {
   if (image.pieces.empty()) return false;
   if (settings.engine == EngineKind::levels) return true;
-  return !image.regions.empty() &&
-         (settings.force_law == ForceLaw::penalty || !image.surface_vertices.empty());
+  return !image.regions.empty() && !image.surface_vertices.empty() &&
+         image.proximity_grid != nullptr;
 }
 
 /// FNV-1a (Fowler, Noll, Vo) of all that the layout and the meaning of an engine's memory follow
@@ -423,7 +395,7 @@ Status create(const Scene& scene, const Settings& settings, const Limits& limits
   if (settings.engine == EngineKind::levels) {
     begin_levels(engine.levels);
   } else {
-    begin_regions(scene, engine.regions);
+    begin_regions(scene, engine.minima);
   }
   if (!all_fine_enough(engine, settings)) return Status::image_too_coarse;
   out_engine = &engine;

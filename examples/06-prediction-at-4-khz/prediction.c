@@ -43,6 +43,7 @@ static palpate_engine* engine_of(const palpate_image* images, void** memory) {
   palpate_default_limits(&limits);
   settings.engine = PALPATE_REGIONS;
   settings.delta_m = 0.0005;
+  settings.exact = 1;
   const size_t need = up_to_64(palpate_required_bytes(&scene, &limits, settings.engine));
   palpate_engine* engine = 0;
   *memory = aligned_alloc(64, need);

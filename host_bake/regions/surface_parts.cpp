@@ -142,10 +142,19 @@ class SurfaceBuilder {
         concave.push_back(normal);
       }
     }
-    out.pseudonormal = norm(out.pseudonormal) > kCancelled ? unit(out.pseudonormal) : Vec3d{};
+    const bool has_inside = norm(out.pseudonormal) > kCancelled && !on_border(corners);
+    out.pseudonormal = has_inside ? unit(out.pseudonormal) : Vec3d{};
     out.hull = spherical_hull(distinct_normals(all));
     out.concave = distinct_normals(concave);
     return out;
+  }
+
+  bool on_border(std::span<const Corner> corners) const {
+    return std::ranges::any_of(corners, [&](const Corner& c) {
+      const image::RegionTriangle& t = triangles_[c.name / 3];
+      const std::uint32_t i = c.name % 3;
+      return t.neighbours[i] == image::kNone || t.neighbours[(i + 2) % 3] == image::kNone;
+    });
   }
 
   double angle_at(std::uint32_t t, std::uint32_t c) const {

@@ -12,7 +12,7 @@ from palpate._engine import Engine, Error, Image
 
 # What a scene says of the engine. The rest of it is for the real-time loop.
 _ENGINE = ("engine", "delta_m", "s0", "kappa", "exact", "force_tolerance_N", "interpolate", "bounds", "order")
-_FORCE = ("law", "stiffness_N_per_m", "cluster_radius_m", "max_force_N", "max_torque_Nm")
+_FORCE = ("stiffness_N_per_m", "cluster_radius_m", "max_force_N", "max_torque_Nm")
 _LIMITS = ("nodes", "contacts", "clusters")
 
 
@@ -67,8 +67,8 @@ def load_scene(path):
             pairs = [(names.index(pair["a"]), names.index(pair["b"])) for pair in table["pair"]]
         except (KeyError, ValueError) as error:
             raise Error(f"{path}: [[pair]]: {error}: name two bodies, a and b") from error
-    # A scene may drive a device: its wrench is limited, and right in overlap (config/README.md).
-    settings = {"law": "least_push", "max_force_N": 3.0, "max_torque_Nm": 0.1}
+    # A scene may drive a device: its wrench is limited (config/README.md).
+    settings = {"max_force_N": 3.0, "max_torque_Nm": 0.1}
     settings |= _only(table.get("engine", {}), _ENGINE) | _only(table.get("force", {}), _FORCE)
     engine = Engine(images, pairs, tools[0], _only(table.get("limits", {}), _LIMITS), **settings)
     poses = np.array(

@@ -74,13 +74,6 @@ class Meter {
   void charge(std::uint64_t units) noexcept { used_ += units; }
   [[nodiscard]] std::uint64_t used() const noexcept { return used_; }
 
-  /// So many units are left for the tail, at most half of all; unlimited ones stay so.
-  void set_aside(std::uint64_t units) noexcept {
-    if (budget_.units == kUnlimited) return;
-    const std::uint64_t half = budget_.units / 2;
-    stop_units_ = budget_.units - (units < half ? units : half);
-  }
-
   /// What lets the tick go on: of units, of time, or of both where both have ended it.
   [[nodiscard]] bool has_reserve() const noexcept {
     const bool of_units = budget_.units != kUnlimited && budget_.reserve_units > 0;
@@ -115,13 +108,6 @@ class Meter {
     const std::uint64_t now = now_ns();
     const double time = stop_ns_ > now ? static_cast<double>(stop_ns_ - now) : 0;
     const double in_time = time / static_cast<double>(query_ns);
-    return in_time < units ? in_time : units;
-  }
-  /// The same of the whole budget's time, for which no clock is read.
-  [[nodiscard]] double queries_in_all(std::uint64_t query_ns) const noexcept {
-    const double units = queries_affordable(0);
-    if (budget_.clock_ns == nullptr) return units;
-    const double in_time = 2 * static_cast<double>(half_ns()) / static_cast<double>(query_ns);
     return in_time < units ? in_time : units;
   }
   /// Whether something that takes so long may still be begun.

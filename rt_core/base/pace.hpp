@@ -19,16 +19,7 @@ class Pace {
   void charge(std::uint64_t units) noexcept { meter_.charge(units); }
   /// See Meter::expect_contacts().
   void expect_contacts(std::uint64_t contacts) noexcept { meter_.expect_contacts(contacts); }
-  /// The next so many units may take what time they need: the clock is not read before.
-  void grant(std::uint64_t units) noexcept {
-    next_reading_ = meter_.used() + units;
-    time_ended_ = false;
-  }
-  /// Units to be had before the clock is read again; 0 once time has ended.
-  [[nodiscard]] std::uint64_t granted() const noexcept {
-    return !time_ended_ && next_reading_ > meter_.used() ? next_reading_ - meter_.used() : 0;
-  }
-  /// go_on() is false after so many units from now on, too, until this is asked again.
+  /// go_on() is false after so many units from now on, too, until no_limit() is called.
   void limit(std::uint64_t units) noexcept { limit_ = meter_.used() + units; }
   void no_limit() noexcept { limit_ = std::numeric_limits<std::uint64_t>::max(); }
   /// Once more is to be had.

@@ -145,7 +145,7 @@ class EdgeContacts {
       const double both = facing(nearest_at(target.surface, foot, way).cosine) * facing(faces(way));
       if (both > 0 && length / both < shortest) shortest = length / both;
     });
-    return weight * directness(shortest, depth);
+    return weight * directness(shortest, depth) * solidity(target.surface, -value);
   }
 
   const Side& side_;

@@ -3,6 +3,7 @@
 // agree, and how much a way out counts beside a shorter one.
 #pragma once
 
+#include "rt_core/contact/surface.hpp"
 #include "rt_core/geometry/angle.hpp"
 #include "rt_core/geometry/vec3.hpp"
 
@@ -20,6 +21,12 @@ inline constexpr double kReach = 1.25;
 /// 1 up to delta, 0 from kReach on.
 inline double within_reach(double distance, double delta) noexcept {
   return clamp01((kReach - distance / delta) / (kReach - 1));
+}
+
+/// How much a point inside counts: wholly, but behind an open surface it fades from half of the
+/// depth on from which it is outside.
+inline double solidity(const Surface& surface, double depth) noexcept {
+  return is_open(surface) ? clamp01(2 - 2 * depth / open_depth(surface)) : 1;
 }
 
 /// 1 at angle 0, falling in proportion to the angle to 0 at kMostTilt_rad.

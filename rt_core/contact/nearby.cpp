@@ -5,7 +5,8 @@ namespace palpate::contact {
 
 double signed_by(const Surface& surface, const Foot& foot, Vec3d x) noexcept {
   const double distance = sqrt_of(foot.squared);
-  return dot(x - foot.point, pseudonormal(surface, foot)) < 0 ? -distance : distance;
+  const bool behind = dot(x - foot.point, pseudonormal(surface, foot)) < 0;
+  return behind && (!is_open(surface) || distance < open_depth(surface)) ? -distance : distance;
 }
 
 SignedDistance signed_distance(const Target& target, Pace& pace, Vec3d x, std::uint32_t hint,

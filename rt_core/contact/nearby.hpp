@@ -99,8 +99,16 @@ struct SignedDistance {
   }
 };
 
-/// The distance of x from its foot, the nearest of all: negative inside.
+/// The distance of x from its foot, the nearest of all: negative inside. Behind an open surface
+/// that is only up to open_depth(), and nowhere where the foot is on a border.
 double signed_by(const Surface& surface, const Foot& foot, Vec3d x) noexcept;
+
+/// No more than a signed distance, and changes no faster than points move. Signed distances from
+/// closed surfaces are that themselves; about an open one the sign may change anywhere.
+inline double lipschitz_bound(const Surface& surface, double signed_distance) noexcept {
+  if (!is_open(surface)) return signed_distance;
+  return (signed_distance < 0 ? -signed_distance : signed_distance) - 2 * open_depth(surface);
+}
 
 /// @param hint   a triangle that may be near, or kNone
 /// @param limit  farther surfaces are of no interest

@@ -29,12 +29,13 @@ double distance_bound(const Surface& surface, Vec3d x) noexcept {
   const Vec3d in_image = (1 / surface.scale) * x;
   const double slack = kRounding * (1 + norm(in_image));
   const double outside = distance_from_grid(*surface.image->proximity_grid, in_image);
-  const double by_box = outside > 0 ? surface.scale * (outside - slack) : -kAnywhere;
+  const double by_box =
+      outside > 0 ? lipschitz_bound(surface, surface.scale * (outside - slack)) : -kAnywhere;
   const ProximityCell cell = cell_at(*surface.image, vec_cast<float>(in_image));
   if (squared_norm(face_normal(surface, cell.triangle)) == 0) return by_box;
   const Vec3d centre = surface.scale * vec_cast<double>(cell.centre);
-  const double at_centre =
-      signed_by(surface, closest_point(surface, cell.triangle, centre), centre);
+  const double at_centre = lipschitz_bound(
+      surface, signed_by(surface, closest_point(surface, cell.triangle, centre), centre));
   return larger(by_box, at_centre - norm(x - centre) - surface.scale * slack);
 }
 

@@ -73,7 +73,7 @@ Vec3d pseudonormal(const Surface& surface, const Foot& foot) noexcept {
   }
   const std::uint32_t beyond = surface.image->region_triangles[foot.triangle].neighbours[i];
   const Vec3d own = face_normal(surface, foot.triangle);
-  return beyond == image::kNone ? own : own + face_normal(surface, beyond);
+  return beyond == image::kNone ? Vec3d{} : own + face_normal(surface, beyond);
 }
 
 namespace {

@@ -17,6 +17,14 @@ struct Surface {
   double scale = 1;  ///< units of an image coordinate
 };
 
+/// Whether the surface has borders.
+inline bool is_open(const Surface& surface) noexcept {
+  const auto flag = static_cast<std::uint32_t>(image::HeaderFlag::open);
+  return (surface.image->header->flags & flag) != 0;
+}
+/// A point is inside an open surface only up to this depth, in the surface's units.
+inline double open_depth(const Surface& surface) noexcept { return 0.1 * surface.scale; }
+
 /// Where on a triangle a closest point lies.
 enum class Feature : std::uint8_t { face, edge0, edge1, edge2, corner0, corner1, corner2 };
 
@@ -44,7 +52,8 @@ Foot closest_point(const Surface& surface, std::uint32_t triangle, Vec3d x) noex
 /// Unit normal of a face; 0 of a sliver, whose normal is rounding.
 Vec3d face_normal(const Surface& surface, std::uint32_t triangle) noexcept;
 
-/// Its sign tells inside from outside (Baerentzen and Aanaes 2005). Not of unit length.
+/// Its sign tells inside from outside (Baerentzen and Aanaes 2005). Not of unit length; 0 on the
+/// borders of an open surface, which have no inside.
 Vec3d pseudonormal(const Surface& surface, const Foot& foot) noexcept;
 
 /// The direction of a set of normals that is nearest to another direction.

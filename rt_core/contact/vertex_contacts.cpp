@@ -45,6 +45,7 @@ class VertexContacts {
     if (at.foot.triangle == image::kNone || at.value > reach_) return at;
     inside_ = at.value < 0;
     depth_ = inside_ ? -at.value : 0;
+    solidity_ = solidity(side_.target.surface, depth_);
     const double radius = radius_of(depth_);
     const double radius2 = radius * radius;
     if (feet_ > 0) {
@@ -159,6 +160,7 @@ class VertexContacts {
       const double size = ahead < 0 ? -ahead : ahead;
       const double unit = size > delta_ ? size : delta_;
       double weight = clamp01((kBesideNone - aside / unit) / (kBesideNone - kBesideWhole));
+      weight *= solidity_;
       if (ahead < 0) weight *= directness(depth_, distance);
       add(normal, ahead, weight, foot);
     };
@@ -198,13 +200,14 @@ class VertexContacts {
     foot.point = shortest->foot;
     foot.triangle = shortest->triangle;
     if (count == 1) {
-      add(only->normal, -length, strongest, foot);
+      add(only->normal, -length, solidity_ * strongest, foot);
       return;
     }
     const Vec3d push = force::least_push({scratch_.constraints, count}).push.vector;
     const double size = norm(push);
     if (!(size > 0)) return;
-    add((1 / size) * push, -length, strongest * clamp01(kCancelling * size / strongest), foot);
+    const double left = clamp01(kCancelling * size / strongest);
+    add((1 / size) * push, -length, solidity_ * left * strongest, foot);
   }
 
   const Side& side_;
@@ -216,6 +219,7 @@ class VertexContacts {
   Vec3d x_;
   bool inside_ = false;
   double depth_ = 0;
+  double solidity_ = 1;  // of the target, at this depth
   std::uint32_t ways_ = 0;
   std::uint32_t feet_ = 0;       // in scratch_.feet
   double shortest_ = kAnywhere;  // of ways out, by how far they are faced

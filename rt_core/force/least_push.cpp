@@ -182,6 +182,11 @@ double push_error(const Push& push, double missing) noexcept {
   return sqrt_of(2 * missing * trace + 3 * missing * missing);
 }
 
+double tolerated_violation(const Push& push, double error) noexcept {
+  const double trace = push.trace() > 0 ? push.trace() : 0;
+  return (sqrt_of(trace * trace + 3 * error * error) - trace) / 3;
+}
+
 double difference(const Push& a, const Push& b) noexcept {
   const Vec3d diagonal = a.squeeze_diagonal - b.squeeze_diagonal;
   const Vec3d mixed = a.squeeze_mixed - b.squeeze_mixed;

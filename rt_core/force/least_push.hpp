@@ -86,6 +86,8 @@ inline constexpr std::uint32_t kPushSteps = 100;
 /// by at most `missing` >= 0: with S the squeeze, S + missing I satisfies them, and the projection
 /// on the smaller convex set is no nearer to the origin. O(1)
 [[nodiscard]] double push_error(const Push& push, double missing) noexcept;
+/// The largest `missing` of which push_error() is no more than `error`. O(1)
+[[nodiscard]] double tolerated_violation(const Push& push, double error) noexcept;
 
 /// By how much two pushes differ in any direction, at most. O(1)
 [[nodiscard]] double difference(const Push& a, const Push& b) noexcept;

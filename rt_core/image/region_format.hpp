@@ -68,9 +68,9 @@ inline constexpr std::uint32_t kBrickCells = kBrickEdge * kBrickEdge * kBrickEdg
 inline constexpr std::uint32_t kCoarseBrick = 0x80000000u;
 inline constexpr std::uint32_t kMaxBricksAcross = 1024;  ///< along each axis
 
-/// A grid of cells about the object, each of which names a triangle that is near its centre: where
-/// to look first for what is near a point. Nothing is proved with it, so that validate() asks only
-/// that what it names exists.
+/// A grid of cells about the object, each of which names the triangle nearest to its centre: where
+/// to look first for what is near a point, and a bound of its distance. validate() asks only that
+/// what it names exists; that it is the nearest is proved by `palpate inspect --verify`.
 ///
 /// Cells are in bricks of kBrickEdge cubed. A brick near the surface is fine: its number is that of
 /// its first cell in proximity_cells over kBrickCells. Any other is one triangle, plus
@@ -94,7 +94,7 @@ static_assert(sizeof(RegionRun) == 8);
 struct SurfaceVertex {
   float position[3];
   /// Unit: face normals weighted by their angles here (Baerentzen and Aanaes 2005); 0 where they
-  /// cancel.
+  /// cancel, and on borders.
   float pseudonormal[3];
   std::uint32_t first_normal;  ///< into vertex_normals
   /// Corners of the spherical convex hull of its faces' normals, counter-clockwise seen from

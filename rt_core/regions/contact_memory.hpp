@@ -54,16 +54,6 @@ struct NearRegion {
   std::uint32_t settled = 0;  ///< nothing of it was open for this version of the explanation
 };
 
-/// Where a contact comes from: a vertex of the side's points, or an edge (its index in
-/// surface_edges, plus kEdge).
-struct ContactSource {
-  static constexpr std::uint32_t kEdge = 0x80000000u;
-  std::uint32_t side = 0;
-  std::uint32_t item = 0;
-  [[nodiscard]] bool is_edge() const noexcept { return (item & kEdge) != 0; }
-  bool operator==(const ContactSource&) const = default;
-};
-
 /// What was carrying in the last tick: measured first in the next.
 struct WarmStart {
   ContactSource sources[force::kMostCarrying];
@@ -89,14 +79,23 @@ struct ContactMemory {
   PushSoFar push;
   std::uint32_t tick = 0;
   std::uint64_t measure_ns = 0;  ///< that measuring one vertex or edge takes, about
+
+  [[nodiscard]] bool is_measured(const ContactSource& source) const noexcept {
+    const SideMemory& side = sides[source.side];
+    return tick == (source.is_edge() ? side.edge_ticks[source.index()]
+                                     : side.vertices[source.index()].measured_tick);
+  }
 };
 
 /// What a search has found.
 struct ContactSearchResult {
-  std::uint32_t contacts = 0;  ///< the first of ContactMemory::contacts
-  force::PushResult push;      ///< of their constraints, in metres
-  double strongest_m = 0;      ///< the largest strength of a contact
-  double error_m = 0;          ///< how far the push may be off, in length
+  std::uint32_t contacts = 0;               ///< the first of ContactMemory::contacts
+  force::PushResult push;                   ///< of their constraints, in metres
+  double strongest_m = 0;                   ///< the largest strength of a contact
+  double error_m = 0;                       ///< how far the push may be off, in length
+  Contact nearest{.distance_m = kUnknown};  ///< the nearest points measured, whether they face each
+                                            ///< other or not; below 0: a vertex that is inside
+  double lower_m = kUnknown;   ///< bound of the signed distance of what has not been measured
   std::uint32_t likely = 0;    ///< the first of ContactMemory::likely
   bool push_proved = false;    ///< nothing left changes the push by more than is tolerated
   bool places_proved = false;  ///< nothing left changes where it acts

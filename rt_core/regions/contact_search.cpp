@@ -37,6 +37,8 @@ constexpr double kLikelyExcess = 0.01;
 constexpr std::uint32_t kLookedPerUnit = 8;
 constexpr std::uint32_t kScannedPerUnit = 64;
 
+constexpr std::uint32_t kUnknownCount = 0xffffffffu;
+
 struct HigherPriority {
   std::span<const NearRegion> near;
   bool operator()(std::uint32_t a, std::uint32_t b) const noexcept {
@@ -46,26 +48,66 @@ struct HigherPriority {
 
 }  // namespace
 
-ContactSearch::ContactSearch(ContactMemory& memory, double delta_m) noexcept
-    : memory_(memory), measure_(memory, pace_, explanation_, out_) {
-  explanation_.delta_m = delta_m;
+ContactSearch::ContactSearch(ContactMemory& memory, const PushDemand& demand) noexcept
+    : memory_(memory), demand_(demand), measure_(memory, pace_, explanation_, out_) {
+  explanation_.delta_m = demand.delta_m;
   ++memory_.tick;
+  gather();
 }
 
-bool ContactSearch::guess(Pace& pace) noexcept {
+void ContactSearch::guess(Pace& pace) noexcept {
   pace_ = &pace;
-  gather();
   for (std::uint32_t i = 0; i < memory_.warm.count && may_measure(); ++i) {
     measure(memory_.warm.sources[i]);
   }
   look_and_measure();
-  return pace.go_on();
 }
 
 void ContactSearch::prove_push(Pace& pace) noexcept {
   pace_ = &pace;
   // Vertices tell most for their time.
   out_.push_proved = explain(1, false) && explain(1, true) && !out_.contacts_full;
+}
+
+void ContactSearch::see_minima(Pace& pace, std::span<const Contact> minima,
+                               std::span<const std::uint32_t> edges) noexcept {
+  pace_ = &pace;
+  for (std::size_t i = 0; i < minima.size() && out_.likely < memory_.likely.size(); ++i) {
+    const Contact& c = minima[i];
+    const std::uint32_t side = 2 * c.pair;
+    const SideView& view = memory_.views[side];
+    const bool counts = edges[i] != image::kNone && view.pushes_tool && c.distance_m > 0;
+    if (!counts) continue;
+    const Vec3d push = view.points_of_tool ? c.normal : -c.normal;
+    memory_.likely[out_.likely++] = {vec_cast<float>(push),
+                                     static_cast<float>(demand_.delta_m - c.distance_m),
+                                     1,
+                                     {side, edges[i] | ContactSource::kEdge}};
+  }
+  measure_likely(kMostGuesses);
+}
+
+bool ContactSearch::see_components(Pace& pace) noexcept {
+  pace_ = &pace;
+  bool outside = true;
+  for (std::uint32_t side = 0; side < memory_.sides.size(); ++side) {
+    const SideView& view = memory_.views[side];
+    const ImageView& points = view.image();
+    std::uint32_t first = 0;  // triangle of a component
+    do {
+      const std::uint32_t vertex = points.triangle_vertices[first].corner[0];
+      pace_->charge(1);
+      const Vec3d x = view.side.to_target(contact::position(view.side.points, vertex));
+      double lower = contact::distance_bound(view.side.target.surface, x);
+      if (!(lower > 0) && pace_->go_on()) {
+        measure({side, vertex});
+        lower = memory_.sides[side].vertices[vertex].lower_until - view.odometer;
+      }
+      outside = outside && lower > 0;
+      first = points.region_triangles[first].component;
+    } while (first != 0 && first != image::kNone);
+  }
+  return outside;
 }
 
 void ContactSearch::prove_places(Pace& pace) noexcept {
@@ -118,7 +160,6 @@ void ContactSearch::look_and_measure() noexcept {
       of_part += looks;
       pace_->charge((looks + kLookedPerUnit - 1) / kLookedPerUnit);
     }
-    pace_->expect_contacts(out_.contacts + out_.likely);
     measure_likely(due.empty() ? kMostGuesses : kFewGuesses);
   }
 }
@@ -165,7 +206,7 @@ void ContactSearch::measure_likely(std::uint32_t most) noexcept {
     solve();
     const LikelyContact* const next = most_violated();
     if (next == nullptr) return;
-    measure({next->side, next->vertex});
+    measure(next->source);
   }
   solve();
 }
@@ -189,9 +230,7 @@ const LikelyContact* ContactSearch::most_violated() noexcept {
         (1 - static_cast<double>(c.weight)) * force::kFadedShare * likely_strongest_m_;
     const double excess =
         static_cast<double>(c.strength_m) - faded - push.along(vec_cast<double>(c.push));
-    if (excess <= most || memory_.sides[c.side].vertices[c.vertex].measured_tick == memory_.tick) {
-      continue;
-    }
+    if (excess <= most || memory_.is_measured(c.source)) continue;
     most = excess;
     out = &c;
   }
@@ -206,8 +245,10 @@ bool ContactSearch::explain(double share, bool edges) noexcept {
   explanation_.edges = edges;
   ++explanation_.version;
   for (std::uint32_t round = 0; round < kMostRounds; ++round) {
+    if (!pace_->go_on()) return false;
     solve();
     const std::uint32_t open = collect_open();
+    if (open == kUnknownCount) return false;
     if (open == 0) return true;
     MinQueue<std::uint32_t, HigherPriority> queue(memory_.queue.first(open),
                                                   HigherPriority{memory_.near});
@@ -234,10 +275,13 @@ double ContactSearch::excess_m(const NearRegion& item) const noexcept {
   return explanation_.excess_m(view, explanation_.explained_m(view, item.region), item.lower);
 }
 
+/// Regions that are open, in the queue.
+/// @return how many, kUnknownCount where the budget has ended it
 std::uint32_t ContactSearch::collect_open() noexcept {
-  pace_->charge(near_ / kCollectedPerUnit);
   std::uint32_t open = 0;
   for (std::uint32_t i = 0; i < near_; ++i) {
+    if (i % kCollectedPerUnit == 0) pace_->charge(1);
+    if (i % kCollectedPerUnit == 0 && !pace_->go_on()) return kUnknownCount;
     NearRegion& item = memory_.near[i];
     item.priority = excess_m(item);
     if (!explanation_.is_open(item.priority)) continue;
@@ -251,6 +295,9 @@ std::uint32_t ContactSearch::collect_open() noexcept {
 }
 
 void ContactSearch::solve() noexcept {
+  if (solved_ == out_.contacts) return;
+  solved_ = out_.contacts;
+  pace_->expect_contacts(out_.contacts + out_.likely);
   const std::span<force::PushConstraint> constraints = memory_.constraints.first(out_.contacts);
   out_.strongest_m = force::set_constraints(memory_.contacts.first(out_.contacts), memory_.bodies,
                                             memory_.tool, explanation_.delta_m, constraints);
@@ -261,6 +308,7 @@ void ContactSearch::solve() noexcept {
   out_.push = force::least_push(constraints, {start, out_.push.carrying_count});
   pace_->charge(out_.contacts / kSolvedPerUnit);
   const force::Push& push = out_.push.push;
+  explanation_.negligible_m = force::tolerated_violation(push, 0.5 * demand_.tolerance_m);
   const bool same = push.vector == explanation_.push.vector &&
                     push.squeeze_diagonal == explanation_.push.squeeze_diagonal &&
                     push.squeeze_mixed == explanation_.push.squeeze_mixed &&
@@ -273,19 +321,29 @@ void ContactSearch::solve() noexcept {
 /// By how much what is not measured may change the push. Where the proof has not come to its end,
 /// by what the nearest may be against all directions.
 void ContactSearch::bound_error() noexcept {
-  if (out_.push_proved) return;
+  const double lower_m = out_.lower_m = least_lower_m();
+  double excess_m = 0;
+  double stronger_m = 0;
+  if (out_.push_proved) {
+    excess_m = stronger_m = explanation_.negligible_m;
+  } else if (lower_m < contact::kReach * explanation_.delta_m) {
+    const double strength_m = explanation_.strength_of_distance(lower_m);
+    excess_m = strength_m + norm(out_.push.push.vector);
+    stronger_m = strength_m > out_.strongest_m ? strength_m - out_.strongest_m : 0;
+  }
+  // Those that are missing, and those that fade more the stronger the strongest is.
+  out_.error_m = force::push_error(out_.push.push, excess_m) +
+                 force::push_error(out_.push.push, force::kFadedShare * stronger_m);
+}
+
+/// Of what has not been measured.
+double ContactSearch::least_lower_m() const noexcept {
   double lower_m = kUnknown;
   for (const NearRegion& item : memory_.near.first(near_)) {
     const double unmeasured_m = item.lower * memory_.views[item.side].unit_m;
     lower_m = unmeasured_m < lower_m ? unmeasured_m : lower_m;
   }
-  if (lower_m >= contact::kReach * explanation_.delta_m) return;
-  const double strength_m = explanation_.strength_of_distance(lower_m);
-  const double excess_m = strength_m + norm(out_.push.push.vector);
-  const double stronger_m = strength_m > out_.strongest_m ? strength_m - out_.strongest_m : 0;
-  // Those that are missing, and those that fade more the stronger the strongest is.
-  out_.error_m = force::push_error(out_.push.push, excess_m) +
-                 force::push_error(out_.push.push, force::kFadedShare * stronger_m);
+  return lower_m;
 }
 
 /// What is left open, and what carries.

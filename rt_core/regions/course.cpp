@@ -32,11 +32,4 @@ Course course_ahead(const Work& work, const Active& item) noexcept {
   return {way, static_cast<float>(along)};
 }
 
-Course course_left(const Work& work, const Active& item, const Stand& at) noexcept {
-  if (squared_norm(at.course) == 0) return {};
-  const Vec3d way = at.centre + at.course - centre_of(work.pair_of(item), item.region);
-  const double along = dot(way, way_of_witness(work, item));
-  return {way, along > 0 ? static_cast<float>(along) : 0};
-}
-
 }  // namespace palpate::regions

@@ -18,13 +18,10 @@ struct Course {
   float away = 0;  ///< how far that takes the region from its witness, in units
 };
 
-/// For the ticks to come; O(1), as course_left(). None where bodies are too fast, stand still, or
+/// For the ticks to come; O(1). None where bodies are too fast, stand still, or
 /// have just jumped, or where nothing that is kept of the region would last. What brings a region
 /// nearer to its witness is left out: while that comes nearer no less than anything else, the
 /// interval between them grows no wider.
 [[nodiscard]] Course course_ahead(const Work& work, const Active& item) noexcept;
-
-/// What is left of a course from the present place on: as far as it was to go.
-[[nodiscard]] Course course_left(const Work& work, const Active& item, const Stand& at) noexcept;
 
 }  // namespace palpate::regions

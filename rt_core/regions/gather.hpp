@@ -7,14 +7,8 @@
 namespace palpate::regions {
 
 /// Sets work.active() to the regions that may be nearer than delta by now, and measures their
-/// witnesses and those of their kept pairs that may be nearer. Other regions add to
-/// result.open_m what detail that was left out may have hidden. After a jump, when bounds say
-/// nothing and witnesses little, one pass over both trees comes first (sweep.hpp), and nothing is
-/// kept of witnesses' neighbours.
-///
-/// Where more are felt than there is time to report, some are thinned out (crowd.hpp). Widths are
-/// set. Pairs of bodies whose surfaces may have passed through each other are marked
-/// (Containment::doubtful).
+/// witnesses and those of their kept pairs that may be nearer. After a jump, when bounds say
+/// nothing, one pass over both trees comes first (sweep.hpp). Widths are set.
 /// Cost: O(regions); what the pass takes; a sixteenth of a batch for each pair of triangles that is
 /// measured, witnesses whatever the budget.
 void gather(Work& work) noexcept;

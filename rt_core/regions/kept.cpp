@@ -8,10 +8,6 @@ namespace {
 
 using levels::PairState;
 
-/// Under a budget, at most this share of it goes to pairs that were kept: where there are many,
-/// none would be left to search with, and so it would stay.
-constexpr double kMostMeasured = 0.5;
-
 double way_since_proof(const Work& work, const Active& item) noexcept {
   const PairState& pair = work.pair_of(item);
   const image::Region& region = pair.image_a->regions[item.region];
@@ -116,7 +112,6 @@ void measure(Work& work, std::uint32_t index, const Doubtful& doubtful,
 
 void measure_kept(Work& work) noexcept {
   PairBatch batch(work, Measured(work));
-  work.limit_to(kMostMeasured);
   for (std::uint32_t i = 0; i < work.count; ++i) {
     Active& item = work.active()[i];
     if (work.kept_of(item).near.count == 0) continue;
@@ -126,7 +121,6 @@ void measure_kept(Work& work) noexcept {
     measure(work, i, doubtful, batch);
   }
   batch.measure_all();
-  work.pace.no_limit();
 }
 
 }  // namespace palpate::regions

@@ -65,12 +65,6 @@ struct BoxTest {
       64) float passed[kBatch];  ///< least bounds of what was not near in any call, lane by lane
 };
 
-/// Where places lie in a proximity grid.
-struct BrickLanes {
-  alignas(64) std::int32_t brick[kBatch];     ///< into proximity_bricks
-  alignas(64) std::int32_t in_brick[kBatch];  ///< cell of it, 0 to kBrickCells - 1
-};
-
 struct Kernels {
   const char* name;
 
@@ -122,28 +116,9 @@ struct Kernels {
                       const image::RegionTriangle* const (&b)[kBatch], const Transform& a_to_b,
                       Vec3f along, float (&out)[kBatch]) noexcept;
 
-  /// Bounds from below, squared, of the distances of kBatch pairs, in the unit of b's image: how
-  /// far they are apart along either's normal, 0 where they overlap along both (separating axes, as
-  /// in test_boxes, without those across two edges). Of triangles above each other that is the
-  /// distance, at a third of what that takes. The root is too large by at most 1e-6.
-  void (*triangle_bounds)(const image::RegionTriangle* const (&a)[kBatch],
-                          const image::RegionTriangle* const (&b)[kBatch], const Transform& a_to_b,
-                          KernelScratch& scratch, float (&out_squared)[kBatch]) noexcept;
-
   /// Closest points of the kBatch pairs in scratch.lanes; where a pair crosses, of its edges and
   /// corners.
   void (*witnesses)(KernelScratch& scratch, WitnessLanes& out) noexcept;
-
-  /// The cells of a grid in which the centres of kBatch triangles lie; of a triangle with an edge
-  /// longer than the root of long2, some other place of it, which its number tells: places of
-  /// numbers in a row are spread over it (Roberts 2018). What lies outside of the grid is in the
-  /// outermost cells. Rounding may take what lies between two cells for the other's.
-  /// @param numbers  any
-  /// @param long2    in the coordinates of the triangles' image
-  /// @param to_grid  from these to the grid's, those of the other body's image
-  void (*find_bricks)(const image::RegionTriangle* const (&from)[kBatch],
-                      const std::uint32_t (&numbers)[kBatch], float long2, const Transform& to_grid,
-                      const image::ProximityGrid& grid, BrickLanes& out) noexcept;
 
   /// Squared distances of a point from the boxes of a node, 0 inside, too large by at most 1e-6.
   /// @return bit i: box i is nearer than the root of `below`

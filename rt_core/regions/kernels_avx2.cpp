@@ -5,15 +5,14 @@
 #if defined(__AVX2__)
 
 #include "rt_core/regions/box_kernel.hpp"
-#include "rt_core/regions/look_kernel.hpp"
 #include "rt_core/regions/triangle_kernel.hpp"
 
 namespace palpate::regions {
 
 const Kernels* kernels_avx2() noexcept {
-  static constexpr Kernels kTable = {
-      "avx2",      test_boxes,      triangle_distances, triangle_ways, triangle_courses,
-      separations, triangle_bounds, witnesses,          find_bricks,   point_boxes};
+  static constexpr Kernels kTable = {"avx2",        test_boxes,       triangle_distances,
+                                     triangle_ways, triangle_courses, separations,
+                                     witnesses,     point_boxes};
   return &kTable;
 }
 

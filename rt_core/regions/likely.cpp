@@ -138,15 +138,14 @@ LikelyContacts::Found LikelyContacts::look_at(std::uint32_t vertex,
   if (!(length > 0)) return {};
   Place place{dot(normal, x - corner) / length, (1 / length) * normal};
   const auto delta = static_cast<float>(view_.delta / target_.scale);
-  if (place.distance < delta && !is_over(t, normal, x)) {
+  const bool behind = place.distance < 0 && contact::is_open(target_);
+  if (place.distance < delta && (behind || !is_over(t, normal, x))) {
     const Vec3d at = target_.scale * vec_cast<double>(x);
     const contact::Foot foot = contact::closest_point(target_, triangle, at);
-    const Vec3d apart = at - foot.point;
-    const double distance = sqrt_of(foot.squared);
-    const bool inside = dot(apart, contact::pseudonormal(target_, foot)) < 0;
-    if (distance > 0) {
-      place.normal = vec_cast<float>((inside ? -1 / distance : 1 / distance) * apart);
-      place.distance = static_cast<float>((inside ? -distance : distance) / target_.scale);
+    const double distance = contact::signed_by(target_, foot, at);
+    if (distance != 0) {
+      place.normal = vec_cast<float>((1 / distance) * (at - foot.point));
+      place.distance = static_cast<float>(distance / target_.scale);
     }
   }
   Found found{static_cast<double>(place.distance) * target_.scale, 1};
@@ -158,13 +157,13 @@ LikelyContacts::Found LikelyContacts::look_at(std::uint32_t vertex,
     return found;
   }
   const float cosine = facing_cosine(points, v, transpose(memory_.now.turn) * (-place.normal));
-  const double weight = contact::facing(static_cast<double>(cosine));
+  const double weight = contact::facing(static_cast<double>(cosine)) *
+                        contact::solidity(target_, found.distance < 0 ? -found.distance : 0);
   out.strength_m = static_cast<float>(weight * (view_.delta - found.distance) * view_.unit_m);
   out.weight = static_cast<float>(weight);
   const Vec3d push = view_.to_world * vec_cast<double>(place.normal);
   out.push = vec_cast<float>(view_.points_of_tool ? push : -push);
-  out.side = side_;
-  out.vertex = vertex;
+  out.source = {side_, vertex};
   return found;
 }
 

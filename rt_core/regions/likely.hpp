@@ -12,13 +12,23 @@
 
 namespace palpate::regions {
 
-/// Of a vertex, as a constraint of the push.
+/// Where a contact comes from: a vertex of the side's points, or an edge (its index in
+/// surface_edges, plus kEdge).
+struct ContactSource {
+  static constexpr std::uint32_t kEdge = 0x80000000u;
+  std::uint32_t side = 0;
+  std::uint32_t item = 0;
+  [[nodiscard]] bool is_edge() const noexcept { return (item & kEdge) != 0; }
+  [[nodiscard]] std::uint32_t index() const noexcept { return item & ~kEdge; }
+  bool operator==(const ContactSource&) const = default;
+};
+
+/// As a constraint of the push.
 struct LikelyContact {
   Vec3f push{};          ///< direction in which it pushes the tool, unit, world axes
   float strength_m = 0;  ///< weight times what is short of delta, > 0
   float weight = 0;      ///< (0, 1]
-  std::uint32_t side = 0;
-  std::uint32_t vertex = 0;
+  ContactSource source;
 };
 
 /// What is kept of a region's likely contacts from tick to tick.

@@ -33,7 +33,9 @@ double Explanation::strength_of_distance(double lower_m) const noexcept {
   return lower_m >= 0 ? delta_m - lower_m : delta_m - contact::kMostDetour * lower_m;
 }
 
-bool Explanation::is_open(double excess) const noexcept { return excess > kNegligible * delta_m; }
+bool Explanation::is_open(double excess) const noexcept {
+  return excess > negligible_m + kNegligible * delta_m;
+}
 
 double Explanation::explained_m(const SideView& view, Vec3d axis, double cosine) const noexcept {
   const Vec3d push_axis = cosine > -1 ? view.push_axis(axis) : Vec3d{};
@@ -56,9 +58,9 @@ double Explanation::excess_m(const SideView& view, double explained_m,
 
 void Measuring::source(const ContactSource& source) noexcept {
   if (source.is_edge()) {
-    edge(source.side, source.item & ~ContactSource::kEdge);
+    edge(source.side, source.index());
   } else {
-    vertex(source.side, source.item);
+    vertex(source.side, source.index());
   }
 }
 
@@ -86,7 +88,7 @@ bool Measuring::measures(const SideView& view, const contact::NormalCone& cone, 
   const double explained_m = explanation_.explained_m(view, cone.axis, cone.cosine);
   if (!explanation_.is_open(explanation_.excess_m(view, explained_m, lower))) return false;
   visit.open = true;
-  if (visit.left == 0 || !pace_->go_on()) return false;
+  if (visit.left == 0 || !pace_->go_on_for(memory_.measure_ns)) return false;
   --visit.left;
   return true;
 }
@@ -116,13 +118,15 @@ bool Measuring::proves_far(std::uint32_t side, std::uint32_t index, double lower
   // A point that is not within `far` of the surface may be as deep inside.
   if (!(far > 0) || lower < -far) return false;
   VertexBound& at = memory_.sides[side].vertices[index];
+  const contact::Surface& target = view.side.target.surface;
+  double proved = far + kProvedBeyond * view.delta;
+  const double limit = proved + (proved - contact::lipschitz_bound(target, proved));
   const contact::SignedDistance nearest = contact::signed_distance(
       view.side.target, *pace_, view.side.to_target(contact::position(view.side.points, index)),
-      at.nearest, far + kProvedBeyond * view.delta);
-  double proved = far + kProvedBeyond * view.delta;
+      at.nearest, limit);
   if (nearest.foot.triangle != image::kNone) {
     at.nearest = nearest.foot.triangle;
-    proved = nearest.value;
+    proved = contact::lipschitz_bound(target, nearest.value);
   }
   at.lower_until = larger(at.lower_until, proved + view.odometer);
   return proved >= far;
@@ -157,7 +161,8 @@ Plane Measuring::plane_at(const SideView& view, Vec3d point) noexcept {
       view.side.target, *pace_, view.side.to_target(point), image::kNone, kAnywhere);
   const Vec3d normal = contact::pseudonormal(view.side.target.surface, at.foot);
   const double length = norm(normal);
-  return {at.foot.point, length > 0 ? (1 / length) * normal : Vec3d{}, at.value, memory_.tick};
+  return {at.foot.point, length > 0 ? (1 / length) * normal : Vec3d{},
+          contact::lipschitz_bound(view.side.target.surface, at.value), memory_.tick};
 }
 
 double Measuring::likely_distance(const NearRegion& item) noexcept {
@@ -242,8 +247,37 @@ void Measuring::vertex(std::uint32_t side, std::uint32_t index) noexcept {
   const contact::SignedDistance distance = contact::contacts_of_vertex(
       view.side, *pace_, index, hint_of(side, index), view.delta, *memory_.scratch);
   at.nearest = distance.foot.triangle;
-  at.lower_until = distance.value + view.odometer;
+  at.lower_until =
+      contact::lipschitz_bound(view.side.target.surface, distance.value) + view.odometer;
+  const Vec3d x = view.side.to_target(contact::position(view.side.points, index));
+  const double away = distance.value != 0 ? 1 / distance.value : 0;
+  note_nearest(view, {away * (x - distance.foot.point), distance.value, 0, x, distance.foot.point,
+                      distance.foot.triangle});
   take({side, index});
+}
+
+void Measuring::note_nearest(const SideView& view, const contact::FoundContact& found) noexcept {
+  if (found.distance * view.unit_m < out_.nearest.distance_m) {
+    out_.nearest = contact_of(view, found);
+  }
+}
+
+Contact Measuring::contact_of(const SideView& view,
+                              const contact::FoundContact& found) const noexcept {
+  const Vec3d point = view.world(found.point);
+  const Vec3d foot = view.world(found.foot);
+  const Vec3d normal = view.to_world * found.normal;
+  Contact c;
+  c.point_a_m = view.points_of_a ? point : foot;
+  c.point_b_m = view.points_of_a ? foot : point;
+  c.normal = view.points_of_a ? normal : -normal;
+  c.distance_m = found.distance * view.unit_m;
+  c.centre_m = point - (0.5 * c.distance_m) * normal;
+  c.share = found.weight;
+  c.pair = view.pair;
+  const image::RegionTriangle& t = view.side.target.surface.image->region_triangles[found.triangle];
+  (view.points_of_a ? c.piece_b : c.piece_a) = t.piece;
+  return c;
 }
 
 void Measuring::edge(std::uint32_t side, std::uint32_t index) noexcept {
@@ -264,26 +298,14 @@ void Measuring::edge(std::uint32_t side, std::uint32_t index) noexcept {
 
 void Measuring::take(const ContactSource& source) noexcept {
   const SideView& view = memory_.views[source.side];
-  const ImageView& target = *view.side.target.surface.image;
   for (const contact::FoundContact& found : memory_.scratch->found.all()) {
     if (out_.contacts == memory_.contacts.size()) {
       out_.contacts_full = true;
       return;
     }
-    const Vec3d point = view.world(found.point);
-    const Vec3d foot = view.world(found.foot);
-    const Vec3d normal = view.to_world * found.normal;
-    Contact c;
-    c.point_a_m = view.points_of_a ? point : foot;
-    c.point_b_m = view.points_of_a ? foot : point;
-    c.normal = view.points_of_a ? normal : -normal;
-    c.distance_m = found.distance * view.unit_m;
-    c.centre_m = point - (0.5 * c.distance_m) * normal;
-    c.share = found.weight;
-    c.pair = view.pair;
-    (view.points_of_a ? c.piece_b : c.piece_a) = target.region_triangles[found.triangle].piece;
+    if (source.is_edge()) note_nearest(view, found);
     memory_.sources[out_.contacts] = source;
-    memory_.contacts[out_.contacts++] = c;
+    memory_.contacts[out_.contacts++] = contact_of(view, found);
   }
 }
 

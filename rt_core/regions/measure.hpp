@@ -14,7 +14,8 @@ class Explanation {
   double share = 1;   ///< of it that explains: 1 for the force, less for the torque
   bool edges = true;  ///< edges are measured too
   double delta_m = 0;
-  double strongest_m = 0;  ///< of the contacts known: what fades is weaker the stronger it is
+  double strongest_m = 0;   ///< of the contacts known: what fades is weaker the stronger it is
+  double negligible_m = 0;  ///< what exceeds the push by no more may stay open
 
   std::uint32_t version = 0;  ///< changes with the push and the share
 
@@ -72,6 +73,9 @@ class Measuring {
   void vertex(std::uint32_t side, std::uint32_t index) noexcept;
   void edge(std::uint32_t side, std::uint32_t index) noexcept;
   void take(const ContactSource& source) noexcept;
+  [[nodiscard]] Contact contact_of(const SideView& view,
+                                   const contact::FoundContact& found) const noexcept;
+  void note_nearest(const SideView& view, const contact::FoundContact& found) noexcept;
 
   ContactMemory& memory_;
   Pace*& pace_;

@@ -28,12 +28,4 @@ inline double margin_of(const levels::PairState& pair) noexcept {
   return wanted > most ? most : wanted > least ? wanted : least;
 }
 
-/// Whether what was found of a pair under a budget is out of date: it has moved by more than a
-/// share of delta since, a smaller one where searches did not keep up before.
-inline bool has_moved_on(const levels::PairState& pair, bool lagged) noexcept {
-  constexpr double kFast = 0.1;
-  constexpr double kFastForSearches = 0.02;
-  return last_motion(pair) > (lagged ? kFastForSearches : kFast) * pair.delta;
-}
-
 }  // namespace palpate::regions

@@ -6,7 +6,6 @@
 
 #include "rt_core/levels/body_pair.hpp"
 #include "rt_core/regions/near_pairs.hpp"
-#include "rt_core/regions/seeds.hpp"
 
 namespace palpate::regions {
 
@@ -32,7 +31,6 @@ struct RegionState {
   float lower = 0;  ///< the least of `rest` and of the distances of the kept pairs
   Stand at;
   double active_at = 0;  ///< way_of() in the last tick in which the region was active
-  float cost = 0;        ///< work units of the last search of all of it; 0: not known
   float ahead = 1;       ///< share of the ticks for which it is given a course (course.hpp)
   /// So many exact searches to come keep nothing, for it would not last.
   std::uint32_t bare_searches = 0;
@@ -44,7 +42,6 @@ struct RegionPairs {
   NearPairs near;  ///< with their least distances on the course, or less
   /// Of each of `near`: its distance when it was last measured, and the way since the proof then.
   float apart[kNearPairs];
-  Seeds seeds;  ///< other places of it that are followed (follow.hpp)
 };
 
 /// Of a region, in the coordinates of b.

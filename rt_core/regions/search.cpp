@@ -16,19 +16,6 @@ using image::RegionTriangle;
 
 constexpr float kFar = std::numeric_limits<float>::max();
 
-/// A distance after a motion, at least; of eight roundings at most.
-/// @param moved  with kMotionSlack: where it is that alone, everything is to the bit where it was
-float lessened(float distance, float moved) noexcept {
-  constexpr float kRounded = 1 - 0x1p-21f;
-  if (moved <= static_cast<float>(kMotionSlack)) return distance;
-  const float left = distance * kRounded - moved;
-  return left > 0 ? left : 0;
-}
-float lessened_squared(float squared, float moved) noexcept {
-  const float left = lessened(sqrt_of(squared), moved);
-  return left * left;
-}
-
 /// The pairs of a batch.
 struct Batch {
   Batch(const PairFrame& frame, const std::uint32_t (&of_a)[kBatch],
@@ -73,7 +60,7 @@ void fill_up(SearchScratch& scratch, std::uint32_t count) noexcept {
 class Search {
  public:
   Search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-         const Witness& witness, const Reach& reach, Remainder* left = nullptr) noexcept
+         const Witness& witness, const Reach& reach) noexcept
       : kernels_(kernels),
         frame_(frame),
         trees_{{*frame.a, frame.b_to_a, course_of_b(frame, reach.course), frame.scale2_a},
@@ -81,7 +68,6 @@ class Search {
         scratch_(scratch),
         pace_(pace),
         reach_(reach),
-        left_(left),
         moves_(squared_norm(reach.course) > 0) {
     const float scale = frame.a_to_b.scale;
     volume_a_ = scale * scale * scale;
@@ -98,40 +84,6 @@ class Search {
     return finish();
   }
 
-  /// What is left of a search that was ended before the region moved by so much.
-  Bounds go_on(float moved) noexcept {
-    seen_ = lessened(left_->seen, moved);
-    size_ = left_->size;
-    pending_ = left_->pending;
-    for (std::uint32_t i = 0; i < size_; ++i) {
-      const Candidate& c = left_->stack[i];
-      scratch_.stack[i] = {c.a, c.b, lessened_squared(c.squared, moved)};
-    }
-    for (std::uint32_t i = 0; i < pending_; ++i) {
-      const Candidate& c = left_->batch[i];
-      scratch_.batch_a[i] = c.a;
-      scratch_.batch_b[i] = c.b;
-      scratch_.batch_squared[i] = lessened_squared(c.squared, moved);
-    }
-    seen_before_ = left_->near.count;
-    for (std::uint32_t i = 0; i < seen_before_; ++i) {
-      Witness& pair = left_->near.pairs[i];
-      pair.distance = lessened(pair.distance, moved);
-    }
-    lower_threshold();
-    return finish();
-  }
-
-  /// Looks at everything within the limit, and keeps what crosses.
-  bool collect(const levels::PairState& pair, const image::Region& region,
-               CrossingList& list) noexcept {
-    if (!pace_.go_on()) return false;
-    pair_ = &pair;
-    crossings_ = &list;
-    visit_root(child_name(region.parent, region.slot));
-    return finish().complete;
-  }
-
  private:
   /// One of the two, and how boxes of the other get into its coordinates.
   struct Tree {
@@ -142,13 +94,9 @@ class Search {
   };
 
   Bounds finish() noexcept {
-    while (size_ > 0 || pending_ > 0 || seen_before_ > 0) {
+    while (size_ > 0 || pending_ > 0) {
       if (crowded_) return given_up();
-      if (!pace_.go_on() || has_first()) return interrupted();
-      if (size_ == 0 && seen_before_ > 0) {
-        see_again(left_->near.pairs[--seen_before_]);
-        continue;
-      }
+      if (!pace_.go_on()) return interrupted();
       if (size_ == 0) {
         flush();
         continue;
@@ -163,18 +111,6 @@ class Search {
     out_.rest = proved(passed_over());
     return out_;
   }
-
-  /// A pair that was kept before the bodies moved. Last of all, for where it is now is of interest
-  /// only if it may be nearer than the best.
-  void see_again(const Witness& pair) noexcept {
-    if (pair.distance < upper() - kAsNear) {
-      add_pair(pair.a, pair.b, pair.distance * pair.distance);
-    } else {
-      keep(pair);
-    }
-  }
-
-  bool has_first() const noexcept { return reach_.first && out_.best.nearer_than(reach_.limit); }
 
   /// The root of b against a region: the one pair whose second box is not stored.
   void visit_root(std::uint32_t a) noexcept {
@@ -255,12 +191,8 @@ class Search {
       evaluate_along(squared, least);
       keep_nearest(squared, least);
     } else {
-      const std::uint32_t crossing = evaluate(kernels_, frame_, scratch_, squared);
-      if (crossings_ != nullptr) {
-        note_crossings(crossing);
-      } else {
-        keep_nearest(squared, squared);
-      }
+      evaluate(kernels_, frame_, scratch_, squared);
+      keep_nearest(squared, squared);
     }
     pending_ = 0;
   }
@@ -300,24 +232,13 @@ class Search {
     }
   }
 
-  void note_crossings(std::uint32_t crossing) noexcept {
-    for (std::uint32_t left = crossing & ((1u << pending_) - 1u); left != 0; left &= left - 1) {
-      const int i = __builtin_ctz(left);
-      note_crossing(*pair_, scratch_.batch_a[i], scratch_.batch_b[i], *crossings_);
-    }
-  }
-
   float upper() const noexcept {
     return out_.best.nearer_than(reach_.limit) ? out_.best.distance : reach_.limit;
   }
 
-  /// Pairs that are not kept, and will not be looked at any more, are no nearer.
-  float seen_or_dropped() const noexcept { return seen_ < most_ ? seen_ : most_; }
-
   void lower_threshold() noexcept {
-    const float known = seen_or_dropped();
     const float wanted = upper() + reach_.margin;
-    threshold_ = wanted < known ? wanted : known;
+    threshold_ = wanted < most_ ? wanted : most_;
     threshold_ = threshold_ > 0 ? threshold_ : 0;
     threshold_squared_ = threshold_ * threshold_;
   }
@@ -325,8 +246,7 @@ class Search {
   /// Everything that was passed over is at least this far.
   float passed_over() const noexcept {
     const float now = passed_over_now();
-    const float known = seen_or_dropped();
-    return now < known ? now : known;
+    return now < most_ ? now : most_;
   }
   float passed_over_now() const noexcept {
     if (best_squared_ < threshold_squared_) return threshold_;
@@ -339,14 +259,7 @@ class Search {
   static float proved(float bound) noexcept { return bound > kRounding ? bound - kRounding : 0; }
 
   Bounds interrupted() noexcept {
-    float least = kFar;
-    while (seen_before_ > 0) {
-      const Witness& pair = left_->near.pairs[--seen_before_];
-      const float squared = pair.distance * pair.distance;
-      least = squared < least ? squared : least;
-      keep(pair);
-    }
-    least = threshold_squared_ < least ? threshold_squared_ : least;
+    float least = threshold_squared_;
     for (std::uint32_t i = 0; i < size_; ++i) {
       least = scratch_.stack[i].squared < least ? scratch_.stack[i].squared : least;
     }
@@ -355,7 +268,6 @@ class Search {
     }
     out_.rest = proved(sqrt_of(least));
     out_.complete = false;
-    if (left_ != nullptr) leave();
     return out_;
   }
 
@@ -366,29 +278,16 @@ class Search {
     return out_;
   }
 
-  void leave() noexcept {
-    left_->seen = threshold_;
-    left_->size = size_;
-    left_->pending = pending_;
-    for (std::uint32_t i = 0; i < size_; ++i) left_->stack[i] = scratch_.stack[i];
-    for (std::uint32_t i = 0; i < pending_; ++i) {
-      left_->batch[i] = {scratch_.batch_a[i], scratch_.batch_b[i], scratch_.batch_squared[i]};
-    }
-    left_->near = scratch_.near;
-  }
-
   const Kernels& kernels_;
   const PairFrame& frame_;
   Tree trees_[2];
   SearchScratch& scratch_;
   Pace& pace_;
   Reach reach_;
-  Remainder* left_ = nullptr;  // null: what is left is not wanted
-  bool moves_;                 // along a course
-  float volume_a_ = 1;         // a's unit of volume, in b's
-  float seen_ = kFarthest;     // pairs that were seen before, and not kept, are no nearer
-  float most_ = kFarthest;     // pairs from here on have been dropped
-  bool crowded_ = false;       // and so the interval stays too wide
+  bool moves_;              // along a course
+  float volume_a_ = 1;      // a's unit of volume, in b's
+  float most_ = kFarthest;  // pairs from here on have been dropped
+  bool crowded_ = false;    // and so the interval stays too wide
   Bounds out_;
   float best_squared_ = kFar;
   float threshold_ = 0;
@@ -397,116 +296,9 @@ class Search {
   BoxTest test_;  // of the children looked at last
   std::uint32_t size_ = 0;
   std::uint32_t pending_ = 0;
-  std::uint32_t seen_before_ = 0;  // of left_->near: those not seen again yet
-  const levels::PairState* pair_ = nullptr;
-  CrossingList* crossings_ = nullptr;  // null: distances are asked for
 };
-
-std::uint32_t neighbour(const ImageView& image, std::uint32_t triangle, std::uint32_t i) noexcept {
-  const std::uint32_t n = image.region_triangles[triangle].neighbours[i];
-  return n == image::kNone ? triangle : n;
-}
-
-/// A triangle and its neighbours.
-constexpr std::uint32_t kAround = 4;
-static_assert(kAround * kAround == kBatch);
-
-/// Every triangle of a about a witness's with every one of b, itself first.
-struct Around {
-  Witness pairs[kBatch];
-  bool beyond[kBatch];  ///< that of a is in another region than the witness's
-};
-
-Around around(const PairFrame& frame, const Witness& witness) noexcept {
-  Around out;
-  const std::uint32_t region = frame.a->region_triangles[witness.a].region;
-  for (std::uint32_t i = 0; i < kBatch; ++i) {
-    const std::uint32_t of_a = i / kAround;
-    const std::uint32_t of_b = i % kAround;
-    const std::uint32_t a = of_a > 0 ? neighbour(*frame.a, witness.a, of_a - 1) : witness.a;
-    const std::uint32_t b = of_b > 0 ? neighbour(*frame.b, witness.b, of_b - 1) : witness.b;
-    out.pairs[i] = {a, b};
-    out.beyond[i] = frame.a->region_triangles[a].region != region;
-  }
-  return out;
-}
-
-/// Of pairs within the region the nearest; of those as near the first.
-std::uint32_t nearest_within(const Around& at, const float (&distances)[kBatch]) noexcept {
-  std::uint32_t nearest = 0;
-  for (std::uint32_t i = 1; i < kBatch; ++i) {
-    if (!at.beyond[i] && distances[i] < distances[nearest]) nearest = i;
-  }
-  return nearest;
-}
-
-Beside nearest_beyond(const Around& at, const float (&distances)[kBatch]) noexcept {
-  Beside out;
-  for (std::uint32_t first = kAround; first < kBatch; first += kAround) {
-    if (!at.beyond[first]) continue;
-    std::uint32_t nearest = first;
-    for (std::uint32_t i = first + 1; i < first + kAround; ++i) {
-      if (distances[i] < distances[nearest]) nearest = i;
-    }
-    out.pairs[out.count++] = {at.pairs[nearest].a, at.pairs[nearest].b, distances[nearest]};
-  }
-  return out;
-}
-
-/// No pair of the region is nearer along a witness's way than the witness, which is the first.
-bool is_lowest(const Kernels& kernels, const PairFrame& frame, Pace& pace, const Around& at,
-               Vec3f along) noexcept {
-  float apart[kBatch];
-  separate(kernels, frame, pace, at.pairs, along, apart);
-  return apart[nearest_within(at, apart)] > apart[0] - kAsNear;
-}
-
-/// The nearest of a node's children, and of those that overlap the one whose centre is.
-std::uint32_t nearest_child(const Kernels& kernels, const Box& box, const Transform& to_node,
-                            const RegionNode& node, Pace& pace) noexcept {
-  pace.charge(1);
-  BoxTest test;
-  static_cast<void>(kernels.test_boxes(box, to_node, {}, node, 1, kFar, Order::by_distance, test));
-  const auto last = static_cast<std::int32_t>(node.children) - 1;
-  std::uint32_t nearest = 0;
-  for (std::uint32_t i = 0; i < node.children; ++i) nearest = test.place[i] == last ? i : nearest;
-  return nearest;
-}
-
-/// A leaf of a region as a child of the node above it.
-std::uint32_t leaf_of(const ImageView& image, const image::Region& region,
-                      std::uint32_t which) noexcept {
-  std::uint32_t name = child_name(region.parent, region.slot);
-  for (std::uint32_t depth = 0; depth < image::kMaxRegionDepth; ++depth) {
-    const std::uint32_t below = image.region_nodes[node_of(name)].first + slot_of(name);
-    const RegionNode& node = image.region_nodes[below];
-    if (node.leaf != 0) break;
-    name = child_name(below, which % node.children);
-    which /= node.children;
-  }
-  return name;
-}
 
 }  // namespace
-
-Witness dive(const Kernels& kernels, const PairFrame& frame, Pace& pace, std::uint32_t region,
-             std::uint32_t which) noexcept {
-  const std::uint32_t leaf = leaf_of(*frame.a, frame.a->regions[region], which);
-  const RegionNode& over_a = frame.a->region_nodes[node_of(leaf)];
-  const Box box = box_of(over_a, slot_of(leaf));
-  std::uint32_t node = 0;
-  std::uint32_t slot = 0;
-  for (std::uint32_t depth = 0; depth < image::kMaxRegionDepth; ++depth) {
-    const RegionNode& over_b = frame.b->region_nodes[node];
-    slot = nearest_child(kernels, box, frame.a_to_b, over_b, pace);
-    if (over_b.leaf != 0) break;
-    node = over_b.first + slot;
-  }
-  const RegionNode& over_b = frame.b->region_nodes[node];
-  const RegionNode& in_a = frame.a->region_nodes[over_a.first + slot_of(leaf)];
-  const std::uint32_t of_a = nearest_child(kernels, box_of(over_b, slot), frame.b_to_a, in_a, pace);
-  return {in_a.first + of_a, over_b.first + slot, 0};
-}
 
 void measure(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
              std::uint32_t count, float (&out_distances)[kBatch]) noexcept {
@@ -548,71 +340,13 @@ void separate(const Kernels& kernels, const PairFrame& frame, Pace& pace,
   for (float& apart : out) apart *= scale_b;
 }
 
-void bound(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-           const std::uint32_t (&a)[kBatch], const std::uint32_t (&b)[kBatch],
-           float (&out)[kBatch]) noexcept {
-  const Batch pairs(frame, a, b);
-  pace.charge(kBoundUnits);
-  kernels.triangle_bounds(pairs.a, pairs.b, frame.a_to_b, scratch.kernel, out);
-  for (float& squared : out) squared = sqrt_of(frame.scale2_b * squared);
-}
-
-void climb(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-           Witness& witness, Way way, Beside* out_beside) noexcept {
-  if (out_beside != nullptr) *out_beside = {};
-  for (std::uint32_t step = 0; step < kMaxClimb && pace.go_on(); ++step) {
-    const Around at = around(frame, witness);
-    if (way.is_of(witness) && is_lowest(kernels, frame, pace, at, way.along)) return;
-    for (std::uint32_t i = 0; i < kBatch; ++i) {
-      scratch.batch_a[i] = at.pairs[i].a;
-      scratch.batch_b[i] = at.pairs[i].b;
-    }
-    float distances[kBatch];
-    WayLanes ways;
-    measure_ways(kernels, frame, scratch, pace, kBatch, distances, ways);
-    if (out_beside != nullptr) *out_beside = nearest_beyond(at, distances);
-    const std::uint32_t nearest = nearest_within(at, distances);
-    witness = {at.pairs[nearest].a, at.pairs[nearest].b, distances[nearest]};
-    if (nearest == 0) return;  // the witness itself
-    way = way_of(ways, nearest, witness);
-  }
-}
-
 Bounds search(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-              std::uint32_t region, const Witness& witness, const Reach& reach,
-              Remainder* left) noexcept {
+              std::uint32_t region, const Witness& witness, const Reach& reach) noexcept {
   const image::Region& top = frame.a->regions[region];
-  const Bounds found = Search(kernels, frame, scratch, pace, witness, reach, left)
-                           .run(child_name(top.parent, top.slot));
-  scratch.near.sort();
-  return found;
-}
-
-Witness find_any(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch, Pace& pace,
-                 float limit) noexcept {
-  const Reach reach{.limit = limit, .first = true};
-  const std::uint32_t children = frame.a->region_nodes[0].children;
-  for (std::uint32_t slot = 0; slot < children && pace.go_on(); ++slot) {
-    const Bounds found = Search(kernels, frame, scratch, pace, {}, reach).run(child_name(0, slot));
-    if (found.best.nearer_than(limit)) return found.best;
-  }
-  return {};
-}
-
-Bounds go_on_searching(const Kernels& kernels, const PairFrame& frame, SearchScratch& scratch,
-                       Pace& pace, const Witness& witness, const Reach& reach, double moved,
-                       Remainder& left) noexcept {
   const Bounds found =
-      Search(kernels, frame, scratch, pace, witness, reach, &left).go_on(static_cast<float>(moved));
+      Search(kernels, frame, scratch, pace, witness, reach).run(child_name(top.parent, top.slot));
   scratch.near.sort();
   return found;
-}
-
-bool find_crossings(const Kernels& kernels, const levels::PairState& pair, const PairFrame& frame,
-                    SearchScratch& scratch, Pace& pace, std::uint32_t region,
-                    CrossingList& list) noexcept {
-  return Search(kernels, frame, scratch, pace, {}, {kRounding, 0})
-      .collect(pair, frame.a->regions[region], list);
 }
 
 }  // namespace palpate::regions

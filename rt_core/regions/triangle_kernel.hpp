@@ -327,39 +327,6 @@ void separations(const image::RegionTriangle* const (&a)[kBatch],
   }
 }
 
-/// Squared, how far two triangles are apart along the first one's normal. What a needle's normal
-/// lacks in accuracy costs nothing: both are projected.
-PALPATE_LANES Floats apart_along_normal(const Triangles& of, const Triangles& other) noexcept {
-  const Vectors to_next = of.corner[1] - of.corner[0];
-  const Vectors to_last = of.corner[2] - of.corner[0];
-  const Vectors n = cross(to_next, to_last);
-  const Floats next = dot(n, to_next);
-  const Floats last = dot(n, to_last);
-  Floats low = dot(n, other.corner[0] - of.corner[0]);
-  Floats high = low;
-  for (int i = 1; i < 3; ++i) {
-    const Floats at = dot(n, other.corner[i] - of.corner[0]);
-    low = least(at, low);
-    high = most(at, high);
-  }
-  const Floats beyond = low - most(most(next, last), Floats{});
-  const Floats before = least(least(next, last), Floats{}) - high;
-  const Floats gap = most(most(beyond, before), Floats{});
-  return gap * (gap * inverse(dot(n, n)));
-}
-
-void triangle_bounds(const image::RegionTriangle* const (&a)[kBatch],
-                     const image::RegionTriangle* const (&b)[kBatch], const Transform& a_to_b,
-                     KernelScratch& scratch, float (&out_squared)[kBatch]) noexcept {
-  Work& work = work_in(scratch);
-  for (int lane = 0; lane < static_cast<int>(kBatch); lane += kLanes) {
-    bring_together(a + lane, b + lane, a_to_b, work);
-    const Floats along_b = apart_along_normal(work.b, work.a);
-    const Floats along_a = apart_along_normal(work.a, work.b);
-    store(kShrunk2 * most(along_a, along_b), out_squared + lane);
-  }
-}
-
 void witnesses(KernelScratch& scratch, WitnessLanes& out) noexcept {
   Work& work = work_in(scratch);
   const TriangleLanes& lanes = scratch.lanes;

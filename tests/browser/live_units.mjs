@@ -49,7 +49,7 @@ assert.equal(stateWords({ state: 3, faults: 1 }, names), 'fault: stale state; no
 assert.equal(contactWords(frame), '5, 1 drawn; least distance 0.1 mm');
 assert.equal(deadlineWords({ missed: 3, ticks: 1996 }), '3 missed of 2,000');
 assert.equal(certificateWords({ contact: 0, force_bound_N: 0 }, 5e-4), 'nothing is nearer than 0.5 mm');
-assert.equal(certificateWords({ contact: 1, force_bound_N: 0, cut: true }, 5e-4), 'a contact is not ruled out; cut by the budget');
+assert.equal(certificateWords({ contact: 1, force_bound_N: 0, cut: true }, 5e-4), 'a contact is not ruled out; not proved exact');
 
 // Gamepads: rest, full way, triggers, and what is none of ours.
 const pad = (axes, { values = {}, mapping = 'standard' } = {}) => ({

@@ -23,7 +23,6 @@ done
 PREPARED = {
     "README.md": "python3 examples/two_parts.py\n",
     "docs/SWEEP.md": JAWS,
-    "docs/TRIED.md": JAWS + "palpate make-motion jaws jaws.toml --one-in 20 -o jaws.csv\n",
     "docs/REPORT.md": JAWS
     + """
 palpate make-motion jaws jaws.toml --one-in 50 -o jaws.csv

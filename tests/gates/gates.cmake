@@ -9,7 +9,7 @@ if(NOT PALPATE_SANITIZE AND NOT PALPATE_COVERAGE)
     add_test(NAME rt_core.stack
       COMMAND "${CMAKE_CURRENT_SOURCE_DIR}/gates/stack.py" "${PROJECT_BINARY_DIR}" ${PALPATE_STACK_LIMIT}
         palpate::tick palpate::create palpate::validate
-        test_boxes triangle_distances triangle_ways triangle_courses separations triangle_bounds witnesses find_bricks)
+        test_boxes triangle_distances triangle_ways triangle_courses separations witnesses point_boxes)
   endif()
 endif()
 

@@ -21,7 +21,6 @@ constexpr double kStep = 5e-6;
 const Settings kSettings{.engine = EngineKind::regions,
                          .delta_m = kDelta,
                          .exact = true,
-                         .force_law = ForceLaw::least_push,
                          .stiffness_N_per_m = kStiffness,
                          .cluster_radius_m = 3e-3};
 

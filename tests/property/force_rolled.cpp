@@ -83,7 +83,9 @@ class RolledEllipsoid : public testing::TestWithParam<bool> {
     SCOPED_TRACE(what + ", " + std::to_string(units) + " units");
     const Forces f = forces(way_, settings, units);
     const std::vector<Vec3d>& exact = settings.engine == EngineKind::levels ? levels_ : regions_;
-    EXPECT_LE(largest_step(f.felt), 1.5 * largest_step(exact));
+    // What a guess has not looked at comes in as steps (docs/CONTACT.md, Sec. 10).
+    const double most = settings.engine == EngineKind::levels ? 1.5 : 2.1;
+    EXPECT_LE(largest_step(f.felt), most * largest_step(exact));
     if (kWhole) {
       EXPECT_LE(bench::nrmse(f.felt, exact, kStart), bench::nrmse(f.found, exact, kStart) + 0.01);
     }

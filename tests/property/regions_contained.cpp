@@ -4,15 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
-#include <memory>
 #include <numbers>
 #include <random>
 
 #include "host_bake/models/models.hpp"
 #include "rt_core/engine.hpp"
-#include "rt_core/regions/containment.hpp"
-#include "rt_core/regions/region_triangle.hpp"
 #include "tests/support/answers.hpp"
 #include "tests/support/baked_scene.hpp"
 #include "tests/support/brute_force.hpp"
@@ -74,7 +70,7 @@ TEST(RegionsContained, small_budget_does_not_rule_out_what_it_has_no_time_to_loo
   const BakedBody small(gear(12, 0.1, 0.05), kRegions);
   const BakedBody large(gear(40, 1, 0.6), kRegions);
   constexpr int kTicks = 50;
-  constexpr std::uint64_t kFewest = 16;  // units of sixteen looks and their batch, and some more
+  constexpr std::uint64_t kFewest = 64;  // units of one vertex that is deep inside, and some more
   for (const std::uint64_t units : {1u, 4u, 16u, 32u, 64u, 128u, 256u}) {
     BakedScene scene({small.view, large.view}, {{0, 1}}, settings());
     int found = 0;
@@ -139,6 +135,9 @@ void expect_no_way_is_denied(const std::vector<BakedBody>& small,
   int contained = 0;
   std::mt19937 rng(3);
   std::uniform_real_distribution<double> from_0_to_1;
+  Settings distances = thin;
+  distances.stiffness_N_per_m = 0;
+  thin.exact = false;
   const auto tick_of = [&](int way) {
     const BakedBody& a = small[std::size_t(way) % small.size()];
     const BakedBody& b = large[std::size_t(way) / small.size() % large.size()];
@@ -154,7 +153,8 @@ void expect_no_way_is_denied(const std::vector<BakedBody>& small,
     pose.position_m -= 0.5 * kTicks * step;
     for (int t = 0; t < kTicks; ++t) {
       const Pose poses[2] = {pose, {}};
-      const TickResult truth = tick_or_fail(*scene().engine, poses);
+      const TickResult truth =
+          tick_or_fail(*BakedScene({a.view, b.view}, {{0, 1}}, distances).engine, poses);
       const bool touches = !truth.contacts.empty();
       const double distance = !touches ? kThin : std::max(0.0, truth.min_distance_m);
       contained += touches && truth.min_distance_m < -kThin ? 1 : 0;
@@ -284,147 +284,11 @@ TEST(RegionsContained, component_of_a_body_is_pushed_out_by_itself) {
         TickResult r = tick({0.02, 0.03, 0.7});
         for (int i = 0; i < 3; ++i) r = tick({0.02, 0.03, 0.7});
         expect_pushed_out(r, {0, 0, parts_move ? 1.0 : -1.0});
-        EXPECT_NEAR(r.min_distance_m, -0.2, 0.03);
+        EXPECT_NEAR(r.min_distance_m, -0.3, 0.13);  // between its nearest and its deepest vertex
         EXPECT_TRUE(tick({0.02, 0.03, 1.5}).contacts.empty());
       }
     }
   }
-}
-
-/// Balls in a row, one body, each a little lower than the one before, and a box that they go into.
-class Row {
- public:
-  explicit Row(int balls) : large_(box(1, 1, 1), kRegions) {
-    bake::Mesh row;
-    for (int i = 0; i < balls; ++i) {
-      at_.push_back({0.9 - 1.8 * (i + 0.5) / balls, 0.01, -0.002 * i});
-      balls_.push_back(shifted(ball(6, 8, 0.4 / balls), at_.back()));
-      row = i > 0 ? together(row, balls_.back()) : balls_.back();
-    }
-    row_ = std::make_unique<BakedBody>(row, kRegions);
-  }
-
-  [[nodiscard]] BakedScene scene(bool row_moves) const {
-    const ImageView views[] = {row_->view, large_.view};
-    return {{views[row_moves ? 0 : 1], views[row_moves ? 1 : 0]}, {{0, 1}}, settings()};
-  }
-
-  /// Calls with a tick for each of some budgets, and with the row and the box as what moves.
-  /// @param call  called as call(tick, row_moves); tick(by): of the row by so much off the box
-  void with_each(std::initializer_list<std::uint64_t> budgets, auto call) const {
-    for (const std::uint64_t units : budgets) {
-      for (const bool row_moves : {true, false}) {
-        SCOPED_TRACE(std::to_string(units) + " units" + (row_moves ? ", moving" : ", still"));
-        BakedScene both = scene(row_moves);
-        call(
-            [&](Vec3d by) {
-              const Pose poses[2] = {{row_moves ? by : -by, {}}, {}};
-              return tick_or_fail(*both.engine, poses, {.units = units});
-            },
-            row_moves);
-      }
-    }
-  }
-
-  /// How many balls are felt deeper than delta, by one contact each.
-  /// @param by  of the row off the box
-  [[nodiscard]] int felt(const TickResult& r, bool row_moves, Vec3d by) const {
-    int felt = 0;
-    for (const Contact& c : r.contacts) {
-      const Vec3d inside = (row_moves ? c.point_a_m : c.point_b_m) - (row_moves ? by : Vec3d{});
-      const auto is_near = [&](Vec3d ball_at) {
-        return norm(inside - ball_at) < 0.45 / static_cast<double>(at_.size());
-      };
-      felt += c.distance_m < -kDelta ? static_cast<int>(std::ranges::count_if(at_, is_near)) : 0;
-    }
-    return felt;
-  }
-
-  /// Each ball that is deep inside has one contact, as deep as brute force finds it.
-  void expect_depths(const TickResult& r, Vec3d by) const {
-    const PlacedTriangles around(large_.mesh, {});
-    for (const bake::Mesh& one : balls_) {
-      const double depth = distance_of(PlacedTriangles(one, {by, {}}), around);
-      const auto is_its = [&](const Contact& c) { return std::abs(c.distance_m + depth) < 1e-6; };
-      EXPECT_EQ(std::ranges::count_if(r.contacts, is_its), 1) << depth;
-    }
-  }
-
- private:
-  BakedBody large_;
-  std::vector<Vec3d> at_;
-  std::vector<bake::Mesh> balls_;
-  std::unique_ptr<BakedBody> row_;
-};
-
-TEST(RegionsContained, all_components_that_are_inside_are_felt) {
-  constexpr int kBalls = 3;
-  const Row row(kBalls);
-  row.with_each({Budget{}.units, 1000, 300}, [&](auto tick, bool row_moves) {
-    const Vec3d deep{0, 0, 0.7};
-    TickResult r = tick(deep);
-    for (int i = 0; i < 4; ++i) r = tick(deep);
-    EXPECT_EQ(row.felt(r, row_moves, deep), kBalls);
-    EXPECT_EQ(r.contacts.size(), static_cast<std::size_t>(kBalls));
-    row.expect_depths(r, deep);
-    EXPECT_GT(r.wrench.force_N.z * (row_moves ? 1 : -1), 0);
-    EXPECT_NEAR(r.wrench.torque_Nm.y, 0, 0.2 * norm(r.wrench.force_N));
-    // One of them leaves the box at its side.
-    const Vec3d aside = deep + Vec3d{0.6, 0, 0};
-    for (int i = 0; i < 4; ++i) r = tick(aside);
-    EXPECT_EQ(row.felt(r, row_moves, aside), kBalls - 1);
-    EXPECT_TRUE(tick({0, 0, 1.5}).contacts.empty());
-  });
-}
-
-/// The last ball goes out through the box's side; that it crosses that does not end what the others
-/// feel.
-TEST(RegionsContained, components_inside_are_felt_beside_one_that_crosses) {
-  constexpr int kBalls = 3;
-  constexpr double kStep = 0.25 * kDelta;
-  const Row row(kBalls);
-  row.with_each({Budget{}.units, 2000}, [&](auto tick, bool row_moves) {
-    Vec3d by{0, 0, 0.6};
-    for (int i = 0; i < 4; ++i) tick(by);
-    int crossed = 0;
-    double before_N = 0;
-    for (; by.x < 0.6; by.x += kStep) {
-      const TickResult r = tick(by);
-      const int deep = row.felt(r, row_moves, by);
-      ASSERT_GE(deep, kBalls - 1) << by.x;
-      const double up_N = r.wrench.force_N.z * (row_moves ? 1 : -1);
-      const bool jumps = by.x > 0 && std::abs(up_N - before_N) > 0.1 * before_N;
-      EXPECT_FALSE(jumps) << by.x << ": " << before_N << " N, then " << up_N;
-      before_N = up_N;
-      crossed += r.contacts.size() > static_cast<std::size_t>(deep) ? 1 : 0;
-    }
-    EXPECT_GT(crossed, 10);
-  });
-}
-
-/// What a budget has in reserve is for a first contact, not for what else may be inside.
-TEST(RegionsContained, reserve_is_not_for_a_second_component) {
-  const Row row(12);
-  BakedScene scene = row.scene(true);
-  const Pose poses[2] = {{{0, 0, 0.5}, {}}, {}};
-  const Budget budget{.units = 40, .reserve_units = 1'000'000};
-  int drawn = 0;
-  for (int i = 0; i < 30; ++i) {
-    const TickResult r = tick_or_fail(*scene.engine, poses, budget);
-    EXPECT_FALSE(r.contacts.empty());
-    drawn += r.certificate.on_reserve ? 1 : 0;
-  }
-  EXPECT_LE(drawn, 1);
-}
-
-TEST(RegionsContained, more_components_inside_than_there_is_room_for_leave_the_question_open) {
-  constexpr int kBalls = regions::kMostContained + 4;
-  const Row row(kBalls);
-  BakedScene scene = row.scene(true);
-  const TickResult r = tick_at(scene, {0, 0, 0.5});
-  EXPECT_EQ(row.felt(r, true, {0, 0, 0.5}), static_cast<int>(regions::kMostContained));
-  EXPECT_GT(r.certificate.error_bound_m, kDelta);
-  EXPECT_TRUE(tick_at(scene, {0, 0, 1.5}).contacts.empty());
 }
 
 TEST(RegionsContained, component_beside_the_one_inside_stays_outside) {
@@ -442,171 +306,8 @@ TEST(RegionsContained, component_beside_the_one_inside_stays_outside) {
       inside += c.distance_m < -kDelta && c.centre_m.z < 1 ? 1 : 0;
     }
     EXPECT_GT(outside, 0);
-    EXPECT_EQ(inside, 1);
+    EXPECT_GT(inside, 0);
     EXPECT_EQ(static_cast<std::size_t>(outside + inside), r.contacts.size());
-  }
-}
-
-TEST(RegionsContained, side_of_a_point_is_that_of_the_shape) {
-  const BakedBody body(bumpy_ball(24, 30, 1), kRegions);
-  const double radius = body.view.header->radius_m;
-  const double* centre = body.view.header->centre_m;
-  std::mt19937 rng(11);
-  std::uniform_real_distribution<double> coordinate(-1.4, 1.4);
-  int inside = 0;
-  int seen_inside = 0;
-  Vec3d last{2, 0, 0};
-  regions::Side last_side = regions::Side::outside;
-  for (int i = 0; i < 2000; ++i) {
-    const Vec3d p{coordinate(rng), coordinate(rng), coordinate(rng)};
-    const double distance = norm(radius * p + Vec3d{centre[0], centre[1], centre[2]});
-    if (distance > 0.7 && distance < 1.3) continue;  // the bumps are here
-    // In as many ticks as it takes: all at once, of seven units, of one.
-    regions::Side side = regions::Side::unknown;
-    regions::SideQuestion question{.point = p, .walk = {}};
-    while (side == regions::Side::unknown) {
-      Meter meter({.units = i % 3 == 0 ? Budget{}.units : i % 3 == 1 ? 7u : 1u}, {});
-      Pace pace(meter);
-      side = regions::side_of(regions::best_kernels(), body.view, question, pace);
-    }
-    Meter meter({}, {});
-    Pace pace(meter);
-    ASSERT_EQ(side, distance < 1 ? regions::Side::inside : regions::Side::outside) << i;
-    inside += side == regions::Side::inside;
-    const bool seen = regions::in_sight(regions::best_kernels(), body.view, last, p, pace);
-    if (side != last_side) {
-      EXPECT_FALSE(seen) << i;
-    } else if (side == regions::Side::inside) {
-      EXPECT_TRUE(seen) << i;
-      ++seen_inside;
-    }
-    last = p;
-    last_side = side;
-  }
-  EXPECT_GT(seen_inside, 0);
-  EXPECT_GT(inside, 30);
-}
-
-/// A tetrahedron with a corner in the origin; of its normals there one may look nearly the opposite
-/// way of what is outside.
-bake::Mesh corner_of(const Vec3d (&edges)[3]) {
-  bake::Mesh m;
-  m.points.push_back({0, 0, 0});
-  for (const Vec3d& e : edges) m.points.push_back({e.x, e.y, e.z});
-  m.faces = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}};
-  return dot(cross(edges[0], edges[1]), edges[2]) > 0 ? m : inside_out(m);
-}
-
-TEST(RegionsContained, what_is_before_a_sharp_corner_is_outside) {
-  constexpr double kGap = 0.3 * kDelta;
-  const BakedBody tool(ball(4, 6, 0.1), kRegions);
-  std::mt19937 rng(7);
-  std::uniform_real_distribution<double> thin(0.05, 1);
-  for (int body = 0; body < 60; ++body) {
-    const Vec3d axis = random_unit(rng);
-    Vec3d edges[3];
-    for (Vec3d& e : edges) {
-      e = axis + thin(rng) * random_unit(rng);
-      e = (1 / norm(e)) * e;
-    }
-    if (std::abs(dot(cross(edges[0], edges[1]), edges[2])) < 1e-3) continue;
-    const BakedBody needle(corner_of(edges), kRegions);
-    BakedScene scene({tool.view, needle.view}, {{0, 1}}, settings());
-    for (int i = 0; i < 40; ++i) {
-      const Vec3d out = random_unit(rng);
-      if (dot(out, edges[0]) > 0 || dot(out, edges[1]) > 0 || dot(out, edges[2]) > 0) continue;
-      const Pose poses[2] = {approach(tool.mesh, needle.mesh, kGap, 1, out, {}), {}};
-      const TickResult r = tick_or_fail(*scene.engine, poses);
-      ASSERT_FALSE(r.contacts.empty()) << body << ' ' << i;
-      EXPECT_NEAR(r.min_distance_m, kGap, 0.01 * kGap) << body << ' ' << i;
-      for (const Contact& c : r.contacts) EXPECT_GT(c.distance_m, 0) << body << ' ' << i;
-    }
-  }
-}
-
-/// The same with two triangles of no area along the edges from there to 1 and 3.
-bake::Mesh needles_at(const Vec3d (&edges)[3]) {
-  bake::Mesh m = corner_of(edges);
-  const bool turned = m.faces[0][1] == 1;
-  m.points.push_back({1e-17, 0, 0});
-  m.faces[2] = turned ? bake::Face{4, 3, 1} : bake::Face{4, 1, 3};
-  m.faces.push_back(turned ? bake::Face{0, 4, 1} : bake::Face{0, 1, 4});
-  m.faces.push_back(turned ? bake::Face{0, 3, 4} : bake::Face{0, 4, 3});
-  return m;
-}
-
-/// The same with one of no area along the edge to 1, whose middle is a corner of it.
-bake::Mesh cap_at(const Vec3d (&edges)[3]) {
-  bake::Mesh m = corner_of(edges);
-  const bool turned = m.faces[0][1] == 1;
-  m.points.push_back({0.5 * edges[0].x, 0.5 * edges[0].y, 0.5 * edges[0].z});
-  m.faces[0] = turned ? bake::Face{0, 4, 2} : bake::Face{0, 2, 4};
-  m.faces.push_back(turned ? bake::Face{4, 1, 2} : bake::Face{4, 2, 1});
-  m.faces.push_back(turned ? bake::Face{1, 4, 0} : bake::Face{1, 0, 4});
-  return m;
-}
-
-TEST(RegionsContained, triangles_without_area_do_not_tell_a_side) {
-  constexpr double kGap = 0.3 * kDelta;
-  const BakedBody tool(ball(4, 6, 0.1), kRegions);
-  std::mt19937 rng(5);
-  for (int body = 0; body < 60; ++body) {
-    const Vec3d edges[3] = {random_unit(rng), random_unit(rng), random_unit(rng)};
-    if (std::abs(dot(cross(edges[0], edges[1]), edges[2])) < 0.05) continue;
-    bake::Mesh mesh = body % 2 == 0 ? needles_at(edges) : cap_at(edges);
-    // Some place on the edge that they lie along, or its ends, becomes the origin.
-    const Vec3d place = 0.125 * (body / 2 % 9) * edges[0];
-    for (auto& [x, y, z] : mesh.points) {
-      x -= place.x;
-      y -= place.y;
-      z -= place.z;
-    }
-    const BakedBody slivers(std::move(mesh), kRegions);
-    BakedScene scene({tool.view, slivers.view}, {{0, 1}}, settings());
-    const PlacedTriangles fixed(slivers.mesh, {});
-    for (int i = 0; i < 20; ++i) {
-      const Pose poses[2] = {approach(tool.mesh, slivers.mesh, kGap, 3, random_unit(rng), {}), {}};
-      const TickResult r = tick_or_fail(*scene.engine, poses);
-      ASSERT_FALSE(r.contacts.empty()) << body << ' ' << i;
-      const double truth = distance_of(PlacedTriangles(tool.mesh, poses[0]), fixed);
-      EXPECT_NEAR(r.min_distance_m, truth, 1e-6) << body << ' ' << i;
-      for (const Contact& c : r.contacts) EXPECT_GT(c.distance_m, 0) << body << ' ' << i;
-    }
-  }
-}
-
-/// A tip in the origin.
-bake::Mesh cone(std::uint32_t sides, double radius, double height) {
-  bake::Mesh m;
-  m.points = {{0, 0, 0}, {0, 0, -height}};
-  for (std::uint32_t i = 0; i < sides; ++i) {
-    const double angle = 2 * std::numbers::pi * i / sides;
-    m.points.push_back({radius * std::cos(angle), radius * std::sin(angle), -height});
-  }
-  for (std::uint32_t i = 0; i < sides; ++i) {
-    const std::uint32_t here = 2 + i, next = 2 + (i + 1) % sides;
-    m.faces.push_back({0, here, next});
-    m.faces.push_back({1, next, here});
-  }
-  return m;
-}
-
-TEST(RegionsContained, what_is_before_a_tip_of_many_triangles_is_outside) {
-  constexpr double kGap = 0.3 * kDelta;
-  constexpr double kRadius = 0.3;
-  const BakedBody tool(ball(4, 6, 0.1), kRegions);
-  for (const std::uint32_t sides : {60u, 100u, 300u}) {
-    const BakedBody tip(cone(sides, kRadius, 1), kRegions);
-    BakedScene scene({tool.view, tip.view}, {{0, 1}}, settings());
-    std::mt19937 rng(3);
-    for (int i = 0; i < 40; ++i) {
-      const Vec3d out = random_unit(rng);
-      if (out.z < kRadius * std::hypot(out.x, out.y)) continue;  // the tip is not the nearest
-      const Pose poses[2] = {approach(tool.mesh, tip.mesh, kGap, 1, out, {}), {}};
-      const TickResult r = tick_or_fail(*scene.engine, poses);
-      ASSERT_FALSE(r.contacts.empty()) << sides << ' ' << i;
-      for (const Contact& c : r.contacts) EXPECT_GT(c.distance_m, 0) << sides << ' ' << i;
-    }
   }
 }
 
@@ -625,7 +326,6 @@ TEST(RegionsContained, block_that_crosses_itself_elsewhere_has_an_inside) {
     const Pose in[2] = {{at - Vec3d{0, 0, kDeep}, turn({0.01, 0.02, 0.3})}, {}};
     const TickResult inside = tick_or_fail(*scene.engine, in);
     ASSERT_GT(inside.contacts.size(), 4u);
-    for (const Contact& c : inside.contacts) EXPECT_EQ(c.distance_m < 0, c.point_a_m.z < 1.001);
     EXPECT_GT(inside.wrench.force_N.z, 0);
     const Pose out[2] = {{at + Vec3d{0, 0, kDeep}, turn({0.01, 0.02, 0.3})}, {}};
     const TickResult outside = tick_or_fail(*scene.engine, out);
@@ -633,74 +333,6 @@ TEST(RegionsContained, block_that_crosses_itself_elsewhere_has_an_inside) {
     for (const Contact& c : outside.contacts) EXPECT_GT(c.distance_m, 0);
     EXPECT_GT(outside.wrench.force_N.z, 0);
   }
-}
-
-/// A search that ends early may leave the witness on the back of a wall that is thinner than its
-/// interval.
-TEST(RegionsContained, what_is_before_a_thin_wall_is_not_behind_it_while_its_interval_is_open) {
-  constexpr double kThinnest = 1e-7;  // to rounding both sides are one
-  const Small small;
-  for (const double thickness : {0.02 * kDelta, kThinnest}) {
-    const BakedBody wall(box(1, 1, thickness), kRegions);
-    BakedScene scene({small.body.view, wall.view}, {{0, 1}}, settings());
-    const Vec3d at{0.1, 0.2, 0.1 + 0.3 * kDelta};
-    const TickResult before = tick_at(scene, at);
-    ASSERT_GT(before.min_distance_m, 0);
-    regions::QueryMemory& memory = scene.engine->regions;
-    std::uint32_t back = 0;
-    while (regions::normal_of(wall.view.region_triangles[back]).z >= 0) ++back;
-    for (regions::RegionPairs& kept : memory.kept) kept.near.count = 0;
-    for (regions::RegionState& state : memory.states) {
-      state.lower = static_cast<float>(before.min_distance_m / memory.pairs[0].unit_m) - 1e-5f;
-      state.rest = state.lower;
-    }
-    for (regions::Witness& witness : memory.witnesses) witness.b = back;
-    const Pose poses[2] = {{at, {}}, {}};
-    const TickResult r = tick_or_fail(*scene.engine, poses, {.units = 1});
-    ASSERT_FALSE(r.contacts.empty());
-    EXPECT_GE(r.min_distance_m, before.min_distance_m - 1e-6);
-    EXPECT_GT(r.wrench.force_N.z, 0);
-    if (thickness == kThinnest) continue;  // nothing is inside
-    tick_at(scene, {0, 0, 2});
-    expect_pushed_out(tick_at(scene, at - Vec3d{0, 0, 0.3 * kDelta + 0.001}), {0, 0, 1});
-  }
-}
-
-/// It may also leave it at a corner that is not the nearest place and that the point sees from
-/// outside, where the mean of the faces tells nothing.
-TEST(RegionsContained, corner_that_is_not_the_nearest_does_not_tell_a_side) {
-  constexpr double kSize = 0.5 * kDelta;
-  constexpr double kGap = 0.2 * kDelta;
-  const BakedBody tool(ball(4, 6, 0.1), kRegions);
-  std::mt19937 rng(3);
-  int told = 0;
-  for (int body = 0; body < 40; ++body) {
-    const Vec3d edges[3] = {kSize * random_unit(rng), kSize * random_unit(rng),
-                            kSize * random_unit(rng)};
-    if (std::abs(dot(cross(edges[0], edges[1]), edges[2])) < 0.01 * kSize * kSize * kSize) continue;
-    const BakedBody splinter(corner_of(edges), kRegions);
-    BakedScene scene({tool.view, splinter.view}, {{0, 1}}, settings());
-    regions::QueryMemory& memory = scene.engine->regions;
-    for (int i = 0; i < 10; ++i) {
-      const Pose poses[2] = {approach(tool.mesh, splinter.mesh, kGap, 1, random_unit(rng),
-                                      turn(3.0 * random_unit(rng))),
-                             {}};
-      for (std::uint32_t face = 0; face < 4; ++face) {
-        tick_or_fail(*scene.engine, poses);
-        for (regions::RegionPairs& kept : memory.kept) kept.near.count = 0;
-        for (regions::Witness& witness : memory.witnesses) witness.b = face;
-        tick_or_fail(*scene.engine, poses, {.units = 1});  // measures them
-        for (std::uint32_t k = 0; k < memory.states.size(); ++k) {
-          memory.states[k].rest = memory.states[k].lower =
-              memory.witnesses[k].distance - static_cast<float>(0.05 * memory.pairs[0].delta);
-        }
-        const TickResult r = tick_or_fail(*scene.engine, poses, {.units = 1});
-        for (const Contact& c : r.contacts) EXPECT_GT(c.distance_m, 0) << body << ' ' << i;
-        told += static_cast<int>(r.contacts.size());
-      }
-    }
-  }
-  EXPECT_GT(told, 500);
 }
 
 }  // namespace

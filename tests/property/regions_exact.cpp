@@ -38,6 +38,7 @@ void expect_region_minima(const TickResult& result, std::vector<double> truth, d
                           double unit) {
   std::vector<double> found;
   for (const Contact& c : result.contacts) {
+    if (c.weight > 0) continue;  // carries the force
     found.push_back(c.distance_m);
     EXPECT_NEAR(norm(c.point_a_m - c.point_b_m), std::abs(c.distance_m), 1e-6 * unit);
     EXPECT_NEAR(norm(c.normal), 1, 1e-6);
@@ -198,15 +199,6 @@ std::vector<double> truth_in_units(const Pose& pose, double unit_m) {
   return truth;
 }
 
-double distance_of(std::uint32_t region, const Pose& pose, const PlacedTriangles& fixed) {
-  const PlacedTriangles moved(bodies().a.mesh, pose);
-  double least = std::numeric_limits<double>::max();
-  for (const image::RegionTriangle& t : bodies().a.view.region_triangles) {
-    if (t.region == region) least = distance_from(moved, t.source, fixed, least);
-  }
-  return least;
-}
-
 const Pose kNear{{1.72, 0.2, 0.3}, turn({0.3, 0.2, -0.4})};
 constexpr double kRounding = 2e-7;  // of the distances of single triangles
 
@@ -355,126 +347,6 @@ TEST(RegionSearch, is_given_up_where_more_comes_near_on_the_course_than_there_is
   }
 }
 
-/// A search in pieces of so many units; the bodies move in between.
-/// @param then  called with what is known after each piece
-template <class Then>
-std::uint64_t search_in_pieces(SearchedPair& at, std::uint32_t region, const regions::Reach& reach,
-                               std::uint64_t piece, const std::function<Pose(int)>& motion,
-                               const Then& then) {
-  regions::Remainder left;
-  regions::Witness witness;
-  std::uint64_t used = 0;
-  constexpr int kMostPieces = 10'000;
-  for (int i = 0; i < kMostPieces; ++i) {
-    const regions::Stand before = regions::stand_of(at.pair, region);
-    at.move(motion(i));
-    Meter meter({.units = piece}, {});
-    Pace pace(meter);
-    if (witness.known()) {
-      float distances[regions::kBatch];
-      at.scratch->batch_a[0] = witness.a;
-      at.scratch->batch_b[0] = witness.b;
-      Meter free({}, {});
-      Pace unpaced(free);
-      regions::measure(regions::best_kernels(), at.frame, *at.scratch, unpaced, 1, distances);
-      witness.distance = distances[0];
-    }
-    const regions::Bounds found =
-        i == 0 ? regions::search(regions::best_kernels(), at.frame, *at.scratch, pace, region,
-                                 witness, reach, &left)
-               : regions::go_on_searching(regions::best_kernels(), at.frame, *at.scratch, pace,
-                                          witness, reach,
-                                          regions::moved_since(before, at.pair, region), left);
-    used += meter.used();
-    witness = found.best;
-    then(i, found);
-    if (found.complete) return used;
-  }
-  ADD_FAILURE() << "no end";
-  return used;
-}
-
-TEST(RegionSearch, goes_on_where_it_was_left_and_does_nothing_twice) {
-  SearchedPair at(kNear);
-  const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
-  int in_pieces = 0;
-  for (std::uint32_t region = 0; region < truth.size(); region += 3) {
-    for (const float margin : {0.0f, 0.01f, -0.1f}) {
-      const regions::Reach reach{0.5f, margin};
-      Meter meter({}, {});
-      Pace pace(meter);
-      regions::search(regions::best_kernels(), at.frame, *at.scratch, pace, region, {}, reach);
-      for (const std::uint64_t piece : {3u, 40u}) {
-        const double d = truth[region];
-        int pieces = 0;
-        regions::Bounds last;
-        const auto check = [&](int i, const regions::Bounds& found) {
-          pieces = i + 1;
-          last = found;
-          expect_kept_or_beyond_rest(found, at.scratch->near, d);
-        };
-        const std::uint64_t used = search_in_pieces(
-            at, region, reach, piece, [](int) { return kNear; }, check);
-        ASSERT_LE(used, meter.used());
-        in_pieces += pieces > 1 ? 1 : 0;
-        if (d > 0.5 + std::min(0.0, double(margin))) continue;
-        const double rounding = 1e-6 * pieces;  // what each piece gives away
-        ASSERT_GE(double(last.rest), d + std::min(0.0, double(margin)) - 2e-6 - rounding);
-        if (margin >= 0) {
-          ASSERT_NEAR(double(last.best.distance), d, kRounding + rounding);
-        }
-      }
-    }
-  }
-  EXPECT_GT(in_pieces, 20);
-}
-
-TEST(RegionSearch, goes_on_with_true_bounds_while_the_bodies_move) {
-  std::mt19937 rng(11);
-  int in_pieces = 0;
-  for (const std::uint32_t region : {2u, 7u, 11u}) {
-    for (const double speed : {1e-5, 2e-4, 3e-3}) {
-      Pose pose = kNear;
-      SearchedPair at(pose);
-      const auto motion = [&](int) {
-        pose.position_m += speed * random_unit(rng);
-        pose.orientation = pose.orientation * turn(speed * random_unit(rng));
-        return pose;
-      };
-      const auto check = [&](int i, const regions::Bounds& found) {
-        in_pieces += i > 0 ? 1 : 0;
-        if (i % 4 == 1 || found.complete) expect_pairs_bounded(at, pose, region, found);
-      };
-      search_in_pieces(at, region, {2.0f, 0.02f}, 20, motion, check);
-    }
-  }
-  EXPECT_GT(in_pieces, 20);
-}
-
-TEST(RegionSearch, what_was_kept_before_the_bodies_moved_is_measured_where_it_is_now) {
-  std::mt19937 rng(12);
-  int in_pieces = 0;
-  const PlacedTriangles fixed(bodies().b.mesh, {});
-  for (int run = 0; run < effort(200, 20); ++run) {
-    const std::uint32_t region = static_cast<std::uint32_t>(run) %
-                                 static_cast<std::uint32_t>(bodies().a.view.regions.size());
-    Pose pose = kNear;
-    SearchedPair at(pose);
-    const Vec3d step = 5e-3 * random_unit(rng);
-    const auto motion = [&](int) {
-      pose.position_m += step;
-      return pose;
-    };
-    const auto check = [&](int i, const regions::Bounds& found) {
-      in_pieces += i > 0 ? 1 : 0;
-      const double d = distance_of(region, pose, fixed) / at.pair.unit_m;
-      EXPECT_GE(d, double(std::min(found.best.distance, found.rest)) - kRounding) << region;
-    };
-    search_in_pieces(at, region, {2.0f, 0.1f}, 10, motion, check);
-  }
-  EXPECT_GT(in_pieces, 20);
-}
-
 TEST(RegionState, what_keeps_to_its_course_has_not_moved) {
   SearchedPair at(kNear);
   constexpr std::uint32_t kRegion = 5;
@@ -539,7 +411,7 @@ struct Unmeasured {
 
 void expect_kept_are_bounded(const BakedScene& s, std::uint64_t active, const Pose& pose,
                              Unmeasured& out) {
-  const regions::QueryMemory& memory = s.engine->regions;
+  const regions::MinimaMemory& memory = s.engine->minima;
   const levels::PairState& pair = memory.pairs[0];
   const PlacedTriangles moved(bodies().a.mesh, pose);
   const PlacedTriangles fixed(bodies().b.mesh, {});
@@ -593,7 +465,7 @@ TEST(RegionState, what_is_kept_is_measured_or_known_to_be_farther) {
 TEST(RegionState, what_goes_to_and_fro_stays_far) {
   constexpr double kDelta = 0.02;
   BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, exact_settings(kDelta));
-  const regions::QueryMemory& memory = scene.engine->regions;
+  const regions::MinimaMemory& memory = scene.engine->minima;
   const levels::PairState& pair = memory.pairs[0];
   int renewed = 0;
   for (int i = 0; i < 200; ++i) {
@@ -634,128 +506,6 @@ TEST(RegionSweep, bounds_all_regions_from_below_wherever_the_budget_ends_it) {
       EXPECT_GT(told_apart, int(truth.size()) / 2);
     }
   }
-}
-
-TEST(RegionSearch, a_climb_ends_early_only_where_no_neighbour_is_nearer) {
-  SearchedPair at(kNear);
-  const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
-  int ended = 0, in_vain = 0, moved = 0;
-  for (std::uint32_t region = 0; region < truth.size(); ++region) {
-    for (std::uint32_t which = 0; which < effort(20u, 8u); ++which) {
-      Meter meter({}, {});
-      Pace pace(meter);
-      regions::Witness w =
-          regions::dive(regions::best_kernels(), at.frame, pace, region, 37 * which);
-      for (int step = 0; step < 4; ++step) {
-        float distances[regions::kBatch];
-        regions::WayLanes ways;
-        at.scratch->batch_a[0] = w.a;
-        at.scratch->batch_b[0] = w.b;
-        regions::measure_ways(regions::best_kernels(), at.frame, *at.scratch, pace, 1, distances,
-                              ways);
-        w.distance = distances[0];
-        if (w.crosses()) break;
-        const regions::Way way = regions::way_of(ways, 0, w);
-        ASSERT_TRUE(way.is_of(w));
-        Meter for_one_step({.units = 1}, {});
-        Pace one_step(for_one_step);
-        regions::Witness after = w;
-        regions::climb(regions::best_kernels(), at.frame, *at.scratch, one_step, after);
-        const std::uint64_t before = meter.used();
-        regions::Witness quick = w;
-        regions::climb(regions::best_kernels(), at.frame, *at.scratch, pace, quick, way);
-        const bool at_once = meter.used() - before == regions::kSeparationUnits;
-        if (at_once) {
-          ASSERT_TRUE(quick.same_pair(w));
-          ASSERT_GE(after.distance, w.distance - 2 * regions::kAsNear);
-        }
-        const bool stays = after.distance >= w.distance;
-        ended += at_once ? 1 : 0;
-        in_vain += stays && !at_once ? 1 : 0;
-        moved += stays ? 0 : 1;
-        w = after;
-      }
-    }
-  }
-  EXPECT_GT(ended, in_vain);
-  EXPECT_GT(moved, 100);
-}
-
-/// What lies beyond a region's border is measured by the way, and the climb is the same.
-TEST(RegionSearch, a_climb_tells_what_is_near_in_the_regions_beside) {
-  SearchedPair at(kNear);
-  const auto regions = static_cast<std::uint32_t>(bodies().a.view.regions.size());
-  const auto& triangles = bodies().a.view.region_triangles;
-  int beyond = 0;
-  for (std::uint32_t region = 0; region < regions; ++region) {
-    for (std::uint32_t which = 0; which < effort(20u, 8u); ++which) {
-      Meter meter({}, {});
-      Pace pace(meter);
-      const regions::Witness from =
-          regions::dive(regions::best_kernels(), at.frame, pace, region, 37 * which);
-      regions::Witness alone = from, w = from;
-      regions::Beside beside;
-      regions::climb(regions::best_kernels(), at.frame, *at.scratch, pace, alone);
-      regions::climb(regions::best_kernels(), at.frame, *at.scratch, pace, w, {}, &beside);
-      ASSERT_TRUE(w.same_pair(alone));
-      ASSERT_LE(beside.count, 3u);
-      for (std::uint32_t k = 0; k < beside.count; ++k) {
-        const regions::Witness& other = beside.pairs[k];
-        ASSERT_NE(triangles[other.a].region, region);
-        float distances[regions::kBatch];
-        at.scratch->batch_a[0] = other.a;
-        at.scratch->batch_b[0] = other.b;
-        regions::measure(regions::best_kernels(), at.frame, *at.scratch, pace, 1, distances);
-        ASSERT_EQ(distances[0], other.distance);
-        ++beyond;
-      }
-    }
-  }
-  EXPECT_GT(beyond, 50);
-}
-
-TEST(RegionSearch, first_pair_and_climb_are_of_the_region_and_its_bound_holds) {
-  SearchedPair at(kNear);
-  const std::vector<double> truth = truth_in_units(kNear, at.pair.unit_m);
-  Meter meter({}, {});
-  Pace pace(meter);
-  constexpr float kReach = 0.1f;
-  int near = 0;
-  for (std::uint32_t i = 0; i < truth.size(); ++i) {
-    const regions::Bounds found = regions::search(regions::best_kernels(), at.frame, *at.scratch,
-                                                  pace, i, {}, {kReach, -0.5f * kReach, true});
-    ASSERT_LE(double(found.rest), truth[i]);
-    if (truth[i] < 0.5 * double(kReach)) {
-      ASSERT_TRUE(found.best.known());
-    }
-    if (!found.best.known()) continue;
-    regions::Witness w = found.best;
-    const float before = w.distance;
-    regions::climb(regions::best_kernels(), at.frame, *at.scratch, pace, w);
-    EXPECT_LE(w.distance, before);
-    EXPECT_EQ(bodies().a.view.region_triangles[w.a].region, i);
-    EXPECT_GE(double(w.distance), truth[i] - kRounding);
-    ++near;
-  }
-  EXPECT_GT(near, 3);
-}
-
-TEST(RegionsCrossing, overlap_begins_at_zero_and_grows_with_depth) {
-  const BakedBody a(bumpy_ball(14, 20, 1), kRegions);
-  const BakedBody b(box(1, 1, 0.5), kRegions);
-  BakedScene scene({a.view, b.view}, {{0, 1}}, exact_settings(0.02));
-  const Pose touch = approach(a.mesh, b.mesh, 1e-4, 4, {0, 0, 1}, {});
-  double last = 1e-4;
-  for (int i = 0; i < 40; ++i) {
-    Pose poses[2] = {touch, {}};
-    poses[0].position_m.z -= 2e-4 * i;
-    const TickResult r = tick_or_fail(*scene.engine, poses);
-    ASSERT_FALSE(r.contacts.empty());
-    EXPECT_NEAR(r.min_distance_m, last, 4e-4) << i;
-    EXPECT_GT(r.wrench.force_N.z, 0) << i;
-    last = r.min_distance_m;
-  }
-  EXPECT_LT(last, -1e-3);
 }
 
 TEST(RegionsExact, moving_both_bodies_turns_the_wrench_with_them) {

@@ -16,7 +16,7 @@ namespace palpate::test {
 namespace {
 
 constexpr std::uint64_t kEndless = std::numeric_limits<std::uint64_t>::max();
-constexpr std::uint64_t kBeyond = 40;  // units done in one go
+constexpr std::uint64_t kBeyond = 400;  // units of one vertex among triangles like needles
 
 struct Count {
   int touching = 0, missed = 0, drawn = 0;
@@ -38,13 +38,13 @@ Count slide_gears(const Gears& gears, double step, int coming_near, const Budget
   std::mt19937 rng(5);
   Count count;
   for (int i = 0; i < kSlides; ++i) {
-    BakedScene exact = gears.scene();
+    BakedScene distances = gears.distances();
     BakedScene budgeted = gears.scene();
-    Slide slide(exact, rng);
+    Slide slide(distances, rng);
     slide.pose.position_m += coming_near * step * slide.down;
     for (int t = 0; t < coming_near + 60; ++t) {
       const Pose poses[2] = {slide.pose, {}};
-      const bool touches = distance_at(exact, slide.pose) < 0.9999 * Gears::kDelta;
+      const bool touches = distance_at(distances, slide.pose) < 0.9999 * Gears::kDelta;
       count.add(tick_or_fail(*budgeted.engine, poses, budget), touches);
       if (t < coming_near) {
         slide.pose.position_m -= step * slide.down;
@@ -68,7 +68,7 @@ TEST(RegionsReserve, no_tick_in_contact_reports_none_however_small_its_budget) {
       EXPECT_EQ(endless.touching, none.touching);
       EXPECT_EQ(endless.missed, 0) << units;
       EXPECT_EQ(endless.undecided, 0) << units;
-      EXPECT_LT(endless.most_units, 20'000u);
+      EXPECT_LT(endless.most_units, 50'000u);
     }
   }
 }
@@ -107,7 +107,7 @@ TEST(RegionsReserve, ticks_take_no_more_than_budget_and_reserve) {
   const Count count =
       slide_gears(gears, 0.5 * Gears::kDelta, 20, {.units = 50, .reserve_units = 300});
   EXPECT_GT(count.drawn, 0);
-  EXPECT_GT(count.most_units, 50u + kBeyond);
+  EXPECT_GT(count.most_units, 100u);
   EXPECT_LE(count.most_units, 350u + kBeyond);
 }
 
@@ -115,10 +115,10 @@ TEST(RegionsReserve, ticks_take_no_more_than_budget_and_reserve) {
 TEST(RegionsReserve, ticks_that_feel_something_or_nothing_draw_on_none) {
   const Gears gears(60, 50);
   std::mt19937 rng(5);
-  BakedScene exact = gears.scene();
+  BakedScene distances = gears.distances();
   BakedScene without = gears.scene();
   BakedScene with = gears.scene();
-  Slide slide(exact, rng);
+  Slide slide(distances, rng);
   int felt = 0, drawn = 0;
   for (int t = 0; t < 60; ++t) {
     const Pose poses[2] = {slide.pose, {}};
@@ -172,10 +172,10 @@ TEST(RegionsReserve, time_in_reserve_is_after_the_deadline) {
                                        .clock_context = &clock,
                                        .deadline_ns = 0,
                                        .reserve_ns = reserve_ns});
-    EXPECT_TRUE(r.certificate.truncated_by_time);
+    EXPECT_EQ(r.certificate.on_reserve, reserve_ns > 0);
     return r;
   };
-  EXPECT_FALSE(tick_with(0).certificate.on_reserve);
+  EXPECT_TRUE(tick_with(0).certificate.truncated_by_time);
   EXPECT_FALSE(tick_with(1'000'000).contacts.empty());
   EXPECT_FALSE(tick_with(kEndless).contacts.empty());
 }

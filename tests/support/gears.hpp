@@ -23,8 +23,14 @@ struct Gears {
 
   Gears(std::uint32_t teeth_of_a, std::uint32_t teeth_of_b)
       : a(gear(teeth_of_a, 1, 0.5), options()), b(gear(teeth_of_b, 0.9, 0.5), options()) {}
-  BakedScene scene() const {
-    return {{a.view, b.view}, {{0, 1}}, {.engine = EngineKind::regions, .delta_m = kDelta}};
+  BakedScene scene(const Settings& settings = {.engine = EngineKind::regions,
+                                               .delta_m = kDelta}) const {
+    return {{a.view, b.view}, {{0, 1}}, settings};
+  }
+  /// For distances alone.
+  BakedScene distances() const {
+    return scene(
+        {.engine = EngineKind::regions, .delta_m = kDelta, .exact = true, .stiffness_N_per_m = 0});
   }
   static bake::BakeOptions options() {
     bake::BakeOptions options = options_for(bake::ForEngine::regions);
@@ -36,20 +42,20 @@ struct Gears {
 };
 
 /// The least distance of a and b there, or delta.
-inline double distance_at(BakedScene& exact, const Pose& pose) {
+inline double distance_at(BakedScene& distances, const Pose& pose) {
   const Pose poses[2] = {pose, {}};
-  const TickResult r = tick_or_fail(*exact.engine, poses);
+  const TickResult r = tick_or_fail(*distances.engine, poses);
   return r.contacts.empty() ? Gears::kDelta : r.min_distance_m;
 }
 
 /// One gear upon another, and how it goes on from there.
 struct Slide {
-  Slide(BakedScene& exact, std::mt19937& rng)
+  Slide(BakedScene& distances, std::mt19937& rng)
       : down(random_unit(rng)),
         axis(random_unit(rng)),
         pose{2.5 * down, turn(3.0 * random_unit(rng))} {
-    while (distance_at(exact, pose) > 0.4 * Gears::kDelta) {
-      pose.position_m -= (distance_at(exact, pose) - 0.3 * Gears::kDelta) * down;
+    while (distance_at(distances, pose) > 0.4 * Gears::kDelta) {
+      pose.position_m -= (distance_at(distances, pose) - 0.3 * Gears::kDelta) * down;
     }
   }
   void go_on(double way) {

@@ -52,7 +52,9 @@ TEST_P(SurfacePointsOf, overlaps_lie_on_both_surfaces_and_others_stay) {
       }
     }
   }
-  EXPECT_GT(furthest, 1e-3);
+  if (levels) {  // whose points are those of hulls
+    EXPECT_GT(furthest, 1e-3);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Engines, SurfacePointsOf,

@@ -84,29 +84,13 @@ TEST(Meter, contacts_that_there_is_time_for_are_expected_to_take_half_of_the_bud
   EXPECT_EQ(Meter({.units = 1}, learnt(kDeadline_ns)).contacts_affordable(), kInfinity);
 }
 
-TEST(Meter, units_set_aside_are_there_for_the_tail_and_no_more_than_half) {
-  Meter meter({.units = 1000}, {});
-  meter.set_aside(100);
-  EXPECT_EQ(meter.queries_left(), 900u);
-  meter.set_aside(5000);
-  EXPECT_EQ(meter.queries_left(), 500u);
-  meter.charge(500);
-  EXPECT_TRUE(meter.out_of_units());
-  meter.begin_tail();
-  EXPECT_EQ(meter.queries_left(), 500u);
-  Meter unlimited({}, {});
-  unlimited.set_aside(100);
-  EXPECT_FALSE(unlimited.limited());
-}
-
 TEST(Meter, reserve_comes_after_the_budget_once) {
   Meter meter({.units = 100, .reserve_units = 50}, {});
-  meter.charge(80);
-  meter.set_aside(30);
+  meter.charge(100);
   EXPECT_TRUE(meter.out_of_units());
   EXPECT_TRUE(meter.has_reserve());
   meter.draw_on_reserve();
-  EXPECT_EQ(meter.queries_left(), 70u);  // what was set aside, too
+  EXPECT_EQ(meter.queries_left(), 50u);
   EXPECT_FALSE(meter.has_reserve());
 
   SetClock clock;

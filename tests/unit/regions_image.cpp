@@ -11,9 +11,9 @@
 #include "host_bake/mesh/mesh.hpp"
 #include "host_bake/regions/even_order.hpp"
 #include "host_bake/regions/region_tree.hpp"
-#include "rt_core/regions/component.hpp"
-#include "rt_core/regions/region_triangle.hpp"
+#include "rt_core/image/triangle_normal.hpp"
 #include "tests/support/baked_scene.hpp"
+#include "tests/support/components.hpp"
 #include "tests/support/effort.hpp"
 #include "tests/support/shapes.hpp"
 #include "tests/unit/mesh_support.hpp"
@@ -156,28 +156,27 @@ TEST(RegionImage, Components_are_told_apart) {
   const std::uint32_t each = triangles / 3;
   std::uint32_t components = 0;
   std::uint32_t members = 0;
-  ASSERT_TRUE(regions::tells_components(view));
-  for (std::uint32_t first = 0; first != image::kNone;
-       first = regions::next_component(view, first)) {
+  ASSERT_TRUE(tells_components(view));
+  for (std::uint32_t first = 0; first != image::kNone; first = next_component(view, first)) {
     const std::uint32_t of_source = view.region_triangles[first].source / each;
     for (std::uint32_t i = 0; i < triangles; ++i) {
       const bool of_it = view.region_triangles[i].source / each == of_source;
-      ASSERT_EQ(regions::first_of_component(view, i) == first, of_it);
+      ASSERT_EQ(first_of_component(view, i) == first, of_it);
       members += of_it ? 1 : 0;
     }
     ++components;
   }
   EXPECT_EQ(components, 3u);
   EXPECT_EQ(members, triangles);
-  EXPECT_TRUE(regions::tells_components(bumpy().view));
-  EXPECT_EQ(regions::next_component(bumpy().view, 0), image::kNone);
-  EXPECT_EQ(regions::first_of_component(bumpy().view, 5), 0u);
+  EXPECT_TRUE(tells_components(bumpy().view));
+  EXPECT_EQ(next_component(bumpy().view, 0), image::kNone);
+  EXPECT_EQ(first_of_component(bumpy().view, 5), 0u);
 }
 
 TEST(RegionImage, Components_that_lead_nowhere_are_refused) {
   const ImageView& view = apart().view;
-  const std::uint32_t second = regions::next_component(view, 0);
-  const std::uint32_t third = regions::next_component(view, second);
+  const std::uint32_t second = next_component(view, 0);
+  const std::uint32_t third = next_component(view, second);
   const auto triangles = static_cast<std::uint32_t>(view.region_triangles.size());
   const auto lead = [&](std::uint32_t from, std::uint32_t to) {
     Damaged image(apart());
@@ -264,7 +263,7 @@ double least_cosine(const bake::RegionTree& tree) {
   double least = 1;
   std::vector<std::vector<Vec3d>> normals(tree.regions.size());
   for (const image::RegionTriangle& t : tree.triangles) {
-    const Vec3d n = regions::normal_of(t);
+    const Vec3d n = image::normal_of(t);
     normals[t.region].push_back((1 / norm(n)) * n);
   }
   for (const std::vector<Vec3d>& of_region : normals) {
@@ -371,7 +370,7 @@ TEST(RegionTree, Long_triangles_side_by_side_share_a_region) {
 double longest_edge(const image::RegionTriangle& t) {
   double longest = 0;
   for (std::uint32_t k = 0; k < 3; ++k) {
-    const Vec3d edge = regions::corner(t, (k + 1) % 3, 1) - regions::corner(t, k, 1);
+    const Vec3d edge = image::corner_of(t, (k + 1) % 3) - image::corner_of(t, k);
     longest = std::max(longest, norm(edge));
   }
   return longest;

@@ -213,59 +213,6 @@ TEST(RegionKernels, Separations_bound_distances_and_mostly_meet_them_along_their
   EXPECT_GT(met, 0.95 * asked);
 }
 
-TEST(RegionKernels, TriangleBounds_are_no_farther_than_triangles_of_all_kinds) {
-  Random random(11);
-  const auto scratch = std::make_unique<KernelScratch>();
-  int apart = 0, told = 0;
-  for (int round = 0; round < 4000; ++round) {
-    const Pairs pairs = random_pairs(random);
-    const Kernels& kernels = best_kernels();
-    const double size = 1 + 10 * double(pairs.map.scale);
-    float squared[kBatch], least[kBatch];
-    kernels.triangle_distances(pairs.at_a, pairs.at_b, pairs.map, *scratch, squared);
-    kernels.triangle_bounds(pairs.at_a, pairs.at_b, pairs.map, *scratch, least);
-    for (std::uint32_t i = 0; i < kBatch; ++i) {
-      const double distance = std::sqrt(double(squared[i]));
-      ASSERT_GE(least[i], 0.0f);
-      ASSERT_LE(std::sqrt(double(least[i])), distance + 1e-6 * size) << round << " " << i;
-      apart += distance > 0 ? 1 : 0;
-      told += least[i] > 0 ? 1 : 0;
-    }
-  }
-  EXPECT_GT(told, apart / 2);
-}
-
-TEST(RegionKernels, TriangleBounds_of_triangles_above_each_other_are_their_distances) {
-  Random random(12);
-  const auto scratch = std::make_unique<KernelScratch>();
-  for (int round = 0; round < 500; ++round) {
-    const double height = std::pow(10.0, uniform(random, -4.0, 0.0));
-    // On either side of the larger one's face, in bodies of different scales and turned.
-    const double scale = std::pow(10.0, uniform(random, -2.0, 2.0));
-    const Mat3d turned = random_rotation(random);
-    const double side = round % 2 == 0 ? height : -height;
-    const Vec3d above[3] = {{0.1, 0.1, side}, {0.3, 0.15, 3 * side}, {0.2, 0.3, 2 * side}};
-    const Vec3d below[3] = {{-1, -1, 0}, {2, -1, 0}, {-1, 2, 0}};
-    Pairs pairs;
-    pairs.map = in_float(turned, {}, scale);
-    for (std::uint32_t i = 0; i < kBatch; ++i) {
-      for (int c = 0; c < 3; ++c) {
-        const Vec3d on_a = (1 / scale) * above[c];
-        const Vec3d on_b = turned * below[c];
-        put(on_a, c, pairs.a[i]);
-        put(on_b, c, pairs.b[i]);
-      }
-      pairs.at_a[i] = &pairs.a[i];
-      pairs.at_b[i] = &pairs.b[i];
-    }
-    float least[kBatch];
-    best_kernels().triangle_bounds(pairs.at_a, pairs.at_b, pairs.map, *scratch, least);
-    for (const float squared : least) {
-      ASSERT_NEAR(std::sqrt(double(squared)), height, 2e-6) << round;
-    }
-  }
-}
-
 TEST(RegionKernels, TriangleCourses_bound_distances_all_along_and_are_those_where_nothing_moves) {
   Random random(10);
   const auto scratch = std::make_unique<KernelScratch>();
@@ -569,10 +516,6 @@ TEST(RegionKernels, Witnesses_above_the_middle_of_a_needle_are_right_to_a_millio
 
 TEST(RegionKernels, Tables_give_the_same_bits) {
   // About the pairs; some are outside, and some edges are long.
-  constexpr image::ProximityGrid kGrid{{-0.2f, -0.3f, -0.25f}, 0.013f, {9, 7, 11}, 0};
-  constexpr std::uint32_t kNumbers[kBatch] = {0, 1, 2,  3,  4,          5,          6,          7,
-                                              8, 9, 99, 77, 0xffffffff, 0x80000000, 0x12345678, 1};
-  constexpr float long2 = 0.01f;
   Random random(2);
   const auto scratch = std::make_unique<KernelScratch>();
   for (int round = 0; round < 500; ++round) {
@@ -582,7 +525,6 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
     float first[kBatch], other[kBatch], way_first[3][kBatch], way_other[3][kBatch];
     float separation_first[kBatch], separation_other[kBatch];
     float least_first[kBatch], least_other[kBatch];
-    float bounds_first[kBatch], bounds_other[kBatch];
     WitnessLanes found_first, found_other;
     const auto run = [&](const Kernels& table, float(&squared)[kBatch], WitnessLanes& found) {
       const std::uint32_t crossing =
@@ -611,19 +553,6 @@ TEST(RegionKernels, Tables_give_the_same_bits) {
       ASSERT_EQ(std::memcmp(found_first.apart, found_other.apart, sizeof found_first.apart), 0);
       ASSERT_EQ(std::memcmp(found_first.on_a, found_other.on_a, sizeof found_first.on_a), 0);
       ASSERT_EQ(found_first.crossing, found_other.crossing);
-    }
-    tables()[0]->triangle_bounds(pairs.at_a, pairs.at_b, pairs.map, *scratch, bounds_first);
-    for (const Kernels* table : tables()) {
-      table->triangle_bounds(pairs.at_a, pairs.at_b, pairs.map, *scratch, bounds_other);
-      ASSERT_EQ(std::memcmp(bounds_first, bounds_other, sizeof bounds_first), 0) << table->name;
-    }
-    BrickLanes bricks_first, bricks_other;
-    for (const Kernels* table : tables()) {
-      const bool is_first = table == tables()[0];
-      table->find_bricks(pairs.at_a, kNumbers, long2, pairs.map, kGrid,
-                         is_first ? bricks_first : bricks_other);
-      if (is_first) bricks_other = bricks_first;
-      ASSERT_EQ(std::memcmp(&bricks_first, &bricks_other, sizeof bricks_first), 0) << table->name;
     }
     const Vec3f course{0.1f, -0.02f, 0.05f};
     for (const Order order : {Order::any, Order::by_distance}) {

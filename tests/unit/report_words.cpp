@@ -78,7 +78,7 @@ TEST(ReportWords, replay_says_times_touch_and_certificate) {
   expect_said(text, "4 ticks replayed, 2 tables.");
   expect_said(text, "fast: a tick took 2.0 µs at the median, 4.0 µs at p99");
   expect_said(text, "in contact in 25 % of the ticks; force 0.15 N on average, 0.3 N at most");
-  expect_said(text, "The budget cut 1 tick short (25 %).");
+  expect_said(text, "1 tick (25 %) is not proved exact.");
   expect_said(text, "within 0.02 mm of the truth at the median");
   expect_said(text, "the true error against exact is 0.01 mm at the median");
   expect_said(text, "exact: a tick took");

@@ -139,7 +139,7 @@ void Bench::forget() {
   if (create(scene(), settings_, limits_, {memory_.get(), bytes_}, engine_) != Status::ok) {
     std::abort();
   }
-  if (kernels_ != nullptr) engine_->regions.kernels = kernels_;
+  if (kernels_ != nullptr) engine_->search.kernels = engine_->minima.kernels = kernels_;
 }
 
 void Bench::use(const regions::Kernels& kernels) {
@@ -167,7 +167,9 @@ std::vector<Pose> motion(const SceneName& scene, const Body& a, const Body& b, d
                          int ticks) {
   const double radius = std::min(a.view.header->radius_m, b.view.header->radius_m);
   const double reach = scene.interlock ? delta_m : 0.3 * radius;
-  Bench wide(a, b, {.engine = EngineKind::regions, .delta_m = reach});
+  Bench wide(
+      a, b,
+      {.engine = EngineKind::regions, .delta_m = reach, .exact = true, .stiffness_N_per_m = 0});
   std::vector<Pose> poses;
   poses.reserve(static_cast<std::size_t>(ticks));
   for (int i = 0; i < ticks; ++i) {

@@ -22,8 +22,7 @@ constexpr Count kCounts[] = {{"own_queries", &Counters::own_queries},
                              {"splits", &Counters::splits},
                              {"near_regions", &Counters::near_regions},
                              {"searches", &Counters::searches},
-                             {"sweeps", &Counters::sweeps},
-                             {"follows", &Counters::follows}};
+                             {"sweeps", &Counters::sweeps}};
 
 struct HighWater {
   const char* name;

@@ -114,9 +114,9 @@ std::string touch(const ReportLine& line) {
   return "The tool was in contact in " + percent(double(touching) / ticks) +
          " of the ticks; force " +
          format("%.3g N on average, %.3g N at most", sum_N / ticks, most_N) + ". " +
-         (cut == 0 ? "The budget cut no tick short."
-                   : "The budget cut " + count_of(cut, "tick", "ticks") + " short (" +
-                         percent(double(cut) / ticks) + ").");
+         (cut == 0 ? "All ticks are exact."
+                   : count_of(cut, "tick", "ticks") + " (" + percent(double(cut) / ticks) + ") " +
+                         (cut == 1 ? "is" : "are") + " not proved exact.");
 }
 
 std::string breaches(const ReportLine& line, const ReportLine& exact, const JudgedBy& by) {

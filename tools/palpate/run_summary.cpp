@@ -89,7 +89,7 @@ std::string timing_lines(const LoopReport& r) {
          line("age of readings", percentiles(r.state_age)) + histograms(r);
 }
 
-std::string cut_by_budget(const LoopReport& r) {
+std::string not_exact(const LoopReport& r) {
   std::string text = format("%.1f %% of the ticks", 100 * share(r.truncated, r.queried));
   if (r.on_reserve > 0) {
     text += "; " + grouped(r.on_reserve) + " went on to see whether anything touches";
@@ -106,7 +106,7 @@ std::string contact_lines(const LoopReport& r) {
                               mean(r.force_N_sum, r.ticks), r.force_N_max, r.torque_Nm_max)) +
          line("energy", format("hand to scene %.2e J, never below %.2e J", r.energy_J + 0.0,
                                r.energy_J_min + 0.0)) +
-         line("cut by budget", cut_by_budget(r));
+         line("not exact", not_exact(r));
 }
 
 std::string host_lines(const RunOutcome& o) {

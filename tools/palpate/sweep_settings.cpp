@@ -43,10 +43,7 @@ void add_regions(std::vector<SweepSetting>& out, const SweepAxes& axes, double d
   std::vector<SweepSetting> all = {{.engine = EngineKind::regions, .delta_m = delta_m}};
   cross(all, axes.force_tolerance_N, &SweepSetting::force_tolerance_N);
   cross(all, axes.budget_us, &SweepSetting::budget_us);
-  for (const SweepSetting& setting : all) {
-    const bool same_as_exact = setting.force_tolerance_N == 0 && std::isinf(setting.budget_us);
-    if (!same_as_exact) add(out, setting);
-  }
+  for (const SweepSetting& setting : all) add(out, setting);
 }
 
 SweepSetting exact(EngineKind engine, Bounds bounds, double delta_m) {

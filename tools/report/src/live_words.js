@@ -27,7 +27,7 @@ export function contactWords(frame) {
 
 export function certificateWords(frame, delta_m) {
   const bound = frame.force_bound_N > 0 ? `, force within ${number(frame.force_bound_N, 2)} N` : '';
-  const cut = frame.cut ? '; cut by the budget' : frame.onReserve ? '; on its reserve' : '';
+  const cut = frame.cut ? '; not proved exact' : frame.onReserve ? '; on its reserve' : '';
   if (frame.contact === kFound) return `distance within ${length(frame.error_m)}${bound}${cut}`;
   return (frame.contact === kRuledOut ? `nothing is nearer than ${length(delta_m)}` : 'a contact is not ruled out') + cut;
 }

@@ -6,7 +6,7 @@
 
 #include "rt_core/image/view.hpp"
 
-namespace palpate::regions {
+namespace palpate::test {
 
 /// Whether the image tells its components apart, as it does since format 1.5.
 inline bool tells_components(const ImageView& image) noexcept {
@@ -26,4 +26,4 @@ inline std::uint32_t next_component(const ImageView& image, std::uint32_t first)
   return named > first ? named : image::kNone;
 }
 
-}  // namespace palpate::regions
+}  // namespace palpate::test
