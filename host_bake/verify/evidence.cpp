@@ -61,18 +61,25 @@ Proof not_provable(const std::string& invariant) {
   return {invariant, true, "not provable: the original surface was left out of this image"};
 }
 
+Proof prove_each(const std::string& invariant, const Things& things,
+                 const std::function<std::string(std::uint32_t)>& check) {
+  std::vector<char> fails(things.count, 0);
+  parallel_for(things.count, [&](std::size_t i) {
+    fails[i] = check(static_cast<std::uint32_t>(i)).empty() ? 0 : 1;
+  });
+  const auto first = std::find(fails.begin(), fails.end(), 1);
+  if (first == fails.end()) {
+    return {invariant, true, std::to_string(things.count) + " " + things.many};
+  }
+  const auto index = static_cast<std::uint32_t>(first - fails.begin());
+  return {invariant, false,
+          things.one + " " + std::to_string(index) + ": " + check(index) + " (" +
+              std::to_string(std::count(first, fails.end(), 1)) + " " + things.many + " fail)"};
+}
+
 Proof prove_each(const std::string& invariant, std::size_t pieces,
                  const std::function<std::string(std::uint32_t)>& check) {
-  std::vector<std::string> wrong(pieces);
-  parallel_for(pieces, [&](std::size_t i) { wrong[i] = check(static_cast<std::uint32_t>(i)); });
-  const auto first =
-      std::find_if(wrong.begin(), wrong.end(), [](const std::string& w) { return !w.empty(); });
-  if (first == wrong.end()) return {invariant, true, std::to_string(pieces) + " pieces"};
-  const auto failures =
-      std::count_if(first, wrong.end(), [](const std::string& w) { return !w.empty(); });
-  return {invariant, false,
-          "piece " + std::to_string(first - wrong.begin()) + ": " + *first + " (" +
-              std::to_string(failures) + " pieces fail)"};
+  return prove_each(invariant, Things{pieces}, check);
 }
 
 }  // namespace palpate::bake

@@ -36,8 +36,19 @@ std::vector<std::uint32_t> alive_at(const ImageView& image, std::uint32_t level)
 /// The answer where a proof needs the original surface and the image is without it.
 Proof not_provable(const std::string& invariant);
 
-/// Runs a check on every piece, in parallel. A check returns an empty string, or what is wrong.
-/// The proof's `found` is the number of pieces checked, or the first piece that fails and why.
+/// What a proof goes through one by one.
+struct Things {
+  std::size_t count = 0;
+  std::string one = "piece";
+  std::string many = "pieces";
+};
+
+/// Runs a check on each, in parallel. A check returns an empty string, or what is wrong, always the
+/// same. The proof's `found` is the number of those checked, or the first that fails and why.
+Proof prove_each(const std::string& invariant, const Things& things,
+                 const std::function<std::string(std::uint32_t)>& check);
+
+/// The same of pieces.
 Proof prove_each(const std::string& invariant, std::size_t pieces,
                  const std::function<std::string(std::uint32_t)>& check);
 

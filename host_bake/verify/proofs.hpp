@@ -80,4 +80,35 @@ Proof prove_region_triangles(const Evidence& evidence);
 /// directions.
 Proof prove_region_neighbours(const Evidence& evidence);
 
+// What contacts see of the surface (region_format.hpp). Bounds derived from how the sections are
+// made and stored are beside the proofs.
+
+/// Every corner of a triangle is at its vertex, to the bit; triangles beside an edge share its two
+/// vertices. Every vertex is of a triangle, and in the run of the region of its first one.
+Proof prove_surface_vertices(const Evidence& evidence);
+
+/// The hull of a vertex holds the normal of every face at it; its corners are such normals, and all
+/// are on the left of all its arcs, so that the engine's way to the nearest direction is right.
+/// Vertices without a hull have normals that lie in no half space.
+Proof prove_vertex_hulls(const Evidence& evidence);
+
+/// Pseudonormals are the normals of the faces weighted by their angles; 0 on borders and where they
+/// cancel.
+Proof prove_pseudonormals(const Evidence& evidence);
+
+/// Concave normals of a vertex are the normals of the faces beside its concave edges, each once.
+Proof prove_concave_normals(const Evidence& evidence);
+
+/// The edges of a region are the convex ones of its triangles, each under the first of its two,
+/// ascending; the runs of the regions follow one another.
+Proof prove_surface_edges(const Evidence& evidence);
+
+/// The cone of a region holds the normals of its faces, exactly as stored, and is no wider than
+/// they need. Regions without a cone have normals that lie in no half space.
+Proof prove_region_cones(const Evidence& evidence);
+
+/// The triangle that a cell names is the nearest to its centre, as the engine computes both, and
+/// the grid holds the surface. O((cells + triangles) log triangles)
+Proof prove_proximity(const Evidence& evidence);
+
 }  // namespace palpate::bake

@@ -3,6 +3,7 @@ if(PALPATE_HOST)
   palpate_test(bake_test
     SOURCES
       unit/bake_hierarchy.cpp unit/bake_metrics.cpp unit/bake_pack.cpp unit/bake_verify.cpp
+      unit/bake_verify_surface.cpp
       golden/bake_image.cpp
     LIBS bodies_support)
 
