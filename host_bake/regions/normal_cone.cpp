@@ -123,6 +123,11 @@ void drop_flat_corners(std::vector<Vec3d>& hull) {
     }
     std::rotate(kept.begin(), kept.begin() + 1, kept.end());
     hull = std::move(kept);
+    // The one that stayed, now the last, has its turn before the end.
+    if (!dropped && hull.size() > 2 && height(*(hull.end() - 2), hull.back(), hull[0]) < least) {
+      hull.pop_back();
+      dropped = true;
+    }
   }
 }
 
