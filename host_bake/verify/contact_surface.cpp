@@ -109,14 +109,16 @@ bool in_half_space(std::span<const Vec3d> normals) {
 
 // --- vertices ---
 
+/// Region of each vertex; none where the runs do not follow one another to the last vertex.
 std::vector<std::uint32_t> regions_of_vertices(const ImageView& image) {
-  std::vector<std::uint32_t> out(image.surface_vertices.size(), image::kNone);
+  std::vector<std::uint32_t> out;
   for (std::uint32_t r = 0; r < image.surface_runs.size(); ++r) {
     const image::SurfaceRun& run = image.surface_runs[r];
-    for (std::size_t i = run.first_vertex; i < std::size_t{run.first_vertex} + run.vertices; ++i) {
-      if (i < out.size()) out[i] = r;
-    }
+    const std::size_t left = image.surface_vertices.size() - out.size();
+    if (run.first_vertex != out.size() || run.vertices > left) return {};
+    out.resize(out.size() + run.vertices, r);
   }
+  if (out.size() != image.surface_vertices.size()) return {};
   return out;
 }
 
@@ -166,6 +168,24 @@ bool turns_left(std::span<const Vec3d> hull) {
   return true;
 }
 
+/// How far a normal is outside of a hull that turns left, rad; small angles. Lengths of differences
+/// tell what cosines of stored normals, which are off by kStored, do not.
+double outside_hull(std::span<const Vec3d> hull, Vec3d n) {
+  bool inside = hull.size() > 2;
+  double least = norm(hull[0] - n);
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Vec3d& from = hull[i];
+    const Vec3d& to = hull[(i + 1) % hull.size()];
+    const Vec3d pole = unit(cross(from, to));
+    const double beyond = -dot(n, pole);
+    inside = inside && beyond <= 0;
+    least = std::min(least, norm(from - n));
+    const bool beside = dot(n, cross(pole, from)) >= 0 && dot(n, cross(to, pole)) >= 0;
+    if (beside && hull.size() > 1) least = std::min(least, std::abs(beyond));
+  }
+  return inside ? 0 : least;
+}
+
 std::string wrong_hull(const ImageView& image, std::uint32_t vertex,
                        std::span<const std::uint32_t> corners) {
   const image::SurfaceVertex& v = image.surface_vertices[vertex];
@@ -178,11 +198,8 @@ std::string wrong_hull(const ImageView& image, std::uint32_t vertex,
     if (!has_near(normals, corner, kStored)) return "a corner of its hull is no face's normal";
   }
   if (hull.size() > 2 && !turns_left(hull)) return "its hull is not convex, or turns right";
-  const contact::Surface surface{&image, 1};
   double most = 0;
-  for (const Vec3d& n : normals) {
-    most = std::max(most, norm(contact::nearest_at_vertex(surface, vertex, n).normal - n));
-  }
+  for (const Vec3d& n : normals) most = std::max(most, outside_hull(hull, n));
   if (most <= kOutsideHull) return {};
   return "a face's normal is " + std::to_string(most) + " rad outside its hull";
 }
@@ -295,9 +312,11 @@ std::string wrong_cone(const image::SurfaceRun& run, std::span<const Vec3d> norm
 }  // namespace
 
 Proof prove_surface_vertices(const Evidence& evidence) {
+  const std::string invariant = "surface vertices are those of the triangles";
   const ImageView& image = evidence.image;
   const std::vector<std::uint32_t> regions = regions_of_vertices(image);
-  return prove_each_vertex("surface vertices are those of the triangles", image,
+  if (has_surface(image) && regions.empty()) return {invariant, false, "the regions' runs are off"};
+  return prove_each_vertex(invariant, image,
                            [&](std::uint32_t v, std::span<const std::uint32_t> corners) {
                              return wrong_vertex(image, regions[v], v, corners);
                            });

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "host_bake/regions/normal_cone.hpp"
 #include "tests/support/baked_scene.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -119,12 +121,27 @@ TEST(VerifySurface, Moved_vertex_is_found) {
             Names{kVertices});
 }
 
+/// The first of two neighbouring runs that has something.
+template <class Count>
+image::SurfaceRun* run_with(const Records& r, Count count) {
+  const auto run = std::ranges::find_if(r.runs.first(r.runs.size() - 1),
+                                        [&](const auto& s) { return s.*count > 0; });
+  return &*run;
+}
+
 TEST(VerifySurface, Vertex_in_another_run_is_found) {
   EXPECT_EQ(failures_after([](const Records& r) {
-              --r.runs[0].vertices;
-              --r.runs[1].first_vertex;
-              ++r.runs[1].vertices;
+              image::SurfaceRun* run = run_with(r, &image::SurfaceRun::vertices);
+              --run[0].vertices;
+              --run[1].first_vertex;
+              ++run[1].vertices;
             }),
+            Names{kVertices});
+}
+
+TEST(VerifySurface, Runs_that_leave_out_a_vertex_are_found) {
+  EXPECT_EQ(failures_after(
+                [](const Records& r) { --run_with(r, &image::SurfaceRun::vertices)->vertices; }),
             Names{kVertices});
 }
 
@@ -132,6 +149,29 @@ TEST(VerifySurface, Corner_at_another_vertex_is_found) {
   const auto found = failures_after(
       [](const Records& r) { std::swap(r.corners[3].corner[0], r.corners[3].corner[1]); });
   EXPECT_EQ(std::ranges::count(found, kVertices), 1);
+}
+
+/// Five normals about an axis, symmetric, so that the hull begins with the one that stands out by
+/// next to nothing: rounded to float it may turn right.
+TEST(VerifySurface, Hulls_have_no_flat_corners) {
+  const double least = std::sqrt(2 * (1 - image::kEqualNormalCos));
+  const auto unit = [](Vec3d v) { return (1 / norm(v)) * v; };
+  for (int turn = 0; turn < 100; ++turn) {
+    const Vec3d axis = unit({std::cos(turn), std::sin(turn), 0.1 * turn});
+    const Vec3d u = across(axis);
+    const Vec3d v = cross(axis, u);
+    std::vector<Vec3d> normals;
+    for (const auto& [x, y] : {std::pair(-0.3, -0.2), std::pair(-0.3 - 1e-9, 0.0),
+                               std::pair(-0.3, 0.2), std::pair(0.3, -0.2), std::pair(0.3, 0.2)}) {
+      normals.push_back(unit(axis + x * u + y * v));
+    }
+    const std::vector<Vec3d> hull = bake::spherical_hull(normals);
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+      const Vec3d& next = hull[(i + 1) % hull.size()];
+      const Vec3d& after = hull[(i + 2) % hull.size()];
+      EXPECT_GT(dot(after, unit(cross(hull[i], next))), 0.1 * least) << "turn " << turn;
+    }
+  }
 }
 
 TEST(VerifySurface, Turned_corner_of_a_hull_is_found) {
@@ -216,10 +256,8 @@ TEST(VerifySurface, Edge_that_is_not_convex_is_found) {
 
 TEST(VerifySurface, Edge_in_another_run_is_found) {
   EXPECT_EQ(failures_after([](const Records& r) {
-              const auto run = std::ranges::find_if(r.runs.first(r.runs.size() - 1),
-                                                    [](const auto& s) { return s.edges > 0; });
-              ASSERT_NE(run, r.runs.end() - 1);
-              --run->edges;
+              image::SurfaceRun* run = run_with(r, &image::SurfaceRun::edges);
+              --run[0].edges;
               --run[1].first_edge;
               ++run[1].edges;
             }),
