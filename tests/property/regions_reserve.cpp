@@ -64,7 +64,7 @@ TEST(RegionsReserve, no_tick_in_contact_reports_none_however_small_its_budget) {
       const Count none = slide_gears(gears, step, 20, {.units = units});
       const Count endless =
           slide_gears(gears, step, 20, {.units = units, .reserve_units = kEndless});
-      EXPECT_GT(none.missed, 0) << units;
+      EXPECT_GE(none.missed, effort(1, 0)) << units;
       EXPECT_EQ(endless.touching, none.touching);
       EXPECT_EQ(endless.missed, 0) << units;
       EXPECT_EQ(endless.undecided, 0) << units;
