@@ -259,9 +259,10 @@ std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const Ba
   });
   if (progress) progress("regions", 0);
   const RegionTree regions = timed(report, "regions", [&] {
-    return options.engine == ForEngine::levels
-               ? RegionTree{}
-               : build_regions(normal, region_options(options.delta_rel));
+    if (options.engine == ForEngine::levels) return RegionTree{};
+    RegionOptions divided = region_options(options.delta_rel);
+    divided.crossing_faces = surface.check.crossing_faces;
+    return build_regions(normal, divided);
   });
   if (progress) progress("pack", 0);
   std::vector<std::byte> bytes = timed(report, "pack", [&] {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "host_bake/mesh/mesh.hpp"
@@ -27,6 +28,8 @@ struct RegionOptions {
   double walls_cosine = 0.1;
   /// ... unless smaller than this share of `radius`: roughness below it is one feature.
   double least_share = 0.25;
+  /// Faces of the mesh that cross others: what is inside is not told by them.
+  std::span<const std::size_t> crossing_faces{};
 };
 
 /// Regions for contacts within delta_rel, which is relative to the object's radius, above zero: a

@@ -34,7 +34,7 @@ class Builder {
  public:
   Builder(const NormalMesh& mesh, Partition partition) : mesh_(mesh), part_(std::move(partition)) {}
 
-  RegionTree run() && {
+  RegionTree run(std::span<const std::size_t> crossing_faces) && {
     fold();
     count_regions();
     parallel_for(out_.nodes.size(), [&](std::size_t i) { fit_children(i); });
@@ -42,7 +42,7 @@ class Builder {
     rank_regions();
     fill_triangles();
     find_runs();
-    out_.surface = surface_parts(mesh_, out_.triangles, out_.regions.size());
+    out_.surface = surface_parts(mesh_, out_.triangles, out_.regions.size(), crossing_faces);
     set_normal_cones(out_.triangles, out_.surface.runs);
     return std::move(out_);
   }
@@ -310,7 +310,7 @@ class Builder {
 }  // namespace
 
 RegionTree build_regions(const NormalMesh& mesh, const RegionOptions& options) {
-  return Builder(mesh, divide(mesh, options)).run();
+  return Builder(mesh, divide(mesh, options)).run(options.crossing_faces);
 }
 
 }  // namespace palpate::bake

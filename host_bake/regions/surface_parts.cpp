@@ -42,8 +42,10 @@ struct VertexNormals {
 class SurfaceBuilder {
  public:
   SurfaceBuilder(const NormalMesh& mesh, std::span<const image::RegionTriangle> triangles,
-                 std::size_t regions)
-      : mesh_(mesh), triangles_(triangles), regions_(regions) {}
+                 std::size_t regions, std::span<const std::size_t> crossing_faces)
+      : mesh_(mesh), triangles_(triangles), regions_(regions), crosses_(mesh.faces.size()) {
+    for (const std::size_t face : crossing_faces) crosses_.at(face) = 1;
+  }
 
   SurfaceParts run() && {
     out_.runs.resize(regions_);
@@ -142,18 +144,20 @@ class SurfaceBuilder {
         concave.push_back(normal);
       }
     }
-    const bool has_inside = norm(out.pseudonormal) > kCancelled && !on_border(corners);
+    const bool has_inside = norm(out.pseudonormal) > kCancelled && !tells_no_inside(corners);
     out.pseudonormal = has_inside ? unit(out.pseudonormal) : Vec3d{};
     out.hull = spherical_hull(distinct_normals(all));
     out.concave = distinct_normals(concave);
     return out;
   }
 
-  bool on_border(std::span<const Corner> corners) const {
+  /// On a border, or of a face that crosses others.
+  bool tells_no_inside(std::span<const Corner> corners) const {
     return std::ranges::any_of(corners, [&](const Corner& c) {
       const image::RegionTriangle& t = triangles_[c.name / 3];
       const std::uint32_t i = c.name % 3;
-      return t.neighbours[i] == image::kNone || t.neighbours[(i + 2) % 3] == image::kNone;
+      return t.neighbours[i] == image::kNone || t.neighbours[(i + 2) % 3] == image::kNone ||
+             crosses_[t.source] != 0;
     });
   }
 
@@ -196,7 +200,8 @@ class SurfaceBuilder {
   const NormalMesh& mesh_;
   std::span<const image::RegionTriangle> triangles_;
   std::size_t regions_;
-  std::vector<Bend> bends_;  // of each side
+  std::vector<char> crosses_;  // of each face
+  std::vector<Bend> bends_;    // of each side
   std::vector<VertexNormals> measured_;
   SurfaceParts out_;
 };
@@ -204,8 +209,8 @@ class SurfaceBuilder {
 }  // namespace
 
 SurfaceParts surface_parts(const NormalMesh& mesh, std::span<const image::RegionTriangle> triangles,
-                           std::size_t regions) {
-  return SurfaceBuilder(mesh, triangles, regions).run();
+                           std::size_t regions, std::span<const std::size_t> crossing_faces) {
+  return SurfaceBuilder(mesh, triangles, regions, crossing_faces).run();
 }
 
 void set_normal_cones(std::span<const image::RegionTriangle> triangles,

@@ -22,11 +22,12 @@ struct SurfaceParts {
 
 /// @param triangles  in the order of the image, their sources faces of the mesh; linked
 /// @param regions    how many
+/// @param crossing_faces  of the mesh: their vertices have no pseudonormal
 /// Vertices of the mesh are vertices here: copies at one place, which keep surfaces apart that
 /// touch, stay apart. Throws InputRefused where a limit of the format is passed. Deterministic,
 /// also across numbers of threads. O(n log n) for bounded valence
 SurfaceParts surface_parts(const NormalMesh& mesh, std::span<const image::RegionTriangle> triangles,
-                           std::size_t regions);
+                           std::size_t regions, std::span<const std::size_t> crossing_faces);
 
 /// Sets the cone of the normals of each region's faces. O(triangles)
 void set_normal_cones(std::span<const image::RegionTriangle> triangles,

@@ -64,16 +64,33 @@ Vec3d face_normal(const Surface& surface, std::uint32_t triangle) noexcept {
   return image::normal_of(surface.image->region_triangles[triangle]);
 }
 
-Vec3d pseudonormal(const Surface& surface, const Foot& foot) noexcept {
-  if (foot.feature == Feature::face) return face_normal(surface, foot.triangle);
-  const std::uint32_t i = which(foot.feature);
-  if (is_corner(foot.feature)) {
-    const std::uint32_t vertex = vertex_of(surface, foot.triangle, i);
-    return vec3d(surface.image->surface_vertices[vertex].pseudonormal);
+namespace {
+
+Vec3d pseudonormal_at(const Surface& surface, std::uint32_t triangle, std::uint32_t i) noexcept {
+  return vec3d(surface.image->surface_vertices[vertex_of(surface, triangle, i)].pseudonormal);
+}
+
+/// Whether a triangle may cross others: none of its vertices has a pseudonormal then.
+bool may_cross(const Surface& surface, std::uint32_t triangle) noexcept {
+  const auto crossing = static_cast<std::uint32_t>(image::HeaderFlag::self_crossing);
+  if ((surface.image->header->flags & crossing) == 0) return false;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    if (squared_norm(pseudonormal_at(surface, triangle, i)) > 0) return false;
   }
+  return true;
+}
+
+}  // namespace
+
+Vec3d pseudonormal(const Surface& surface, const Foot& foot) noexcept {
+  const std::uint32_t i = which(foot.feature);
+  if (is_corner(foot.feature)) return pseudonormal_at(surface, foot.triangle, i);
+  if (may_cross(surface, foot.triangle)) return {};
+  if (foot.feature == Feature::face) return face_normal(surface, foot.triangle);
   const std::uint32_t beyond = surface.image->region_triangles[foot.triangle].neighbours[i];
   const Vec3d own = face_normal(surface, foot.triangle);
-  return beyond == image::kNone ? Vec3d{} : own + face_normal(surface, beyond);
+  if (beyond == image::kNone || may_cross(surface, beyond)) return {};
+  return own + face_normal(surface, beyond);
 }
 
 namespace {

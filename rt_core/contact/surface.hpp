@@ -53,7 +53,7 @@ Foot closest_point(const Surface& surface, std::uint32_t triangle, Vec3d x) noex
 Vec3d face_normal(const Surface& surface, std::uint32_t triangle) noexcept;
 
 /// Its sign tells inside from outside (Baerentzen and Aanaes 2005). Not of unit length; 0 on the
-/// borders of an open surface, which have no inside.
+/// borders of an open surface and where a surface crosses itself, which have no inside.
 Vec3d pseudonormal(const Surface& surface, const Foot& foot) noexcept;
 
 /// The direction of a set of normals that is nearest to another direction.

@@ -94,7 +94,7 @@ static_assert(sizeof(RegionRun) == 8);
 struct SurfaceVertex {
   float position[3];
   /// Unit: face normals weighted by their angles here (Baerentzen and Aanaes 2005); 0 where they
-  /// cancel, and on borders.
+  /// cancel, on borders, and of faces that cross others.
   float pseudonormal[3];
   std::uint32_t first_normal;  ///< into vertex_normals
   /// Corners of the spherical convex hull of its faces' normals, counter-clockwise seen from
