@@ -18,12 +18,12 @@ struct RegionOptions {
   /// two lie side by side within one.
   double radius = 0.06;
   /// Regions in which a part of the surface turns away from the mean normal by more than the angle
-  /// of this cosine are divided by normal: two opposite walls must not share a region, or the force
-  /// jumps when the nearer one changes.
+  /// of this cosine are divided by normal: two opposite walls must not share a region, or the
+  /// nearer one hides the other.
   double cosine = 0.2;
   /// So are those whose normals fall into two groups, the means of which are farther apart than the
-  /// angle of this cosine: what pushes along the one is not felt along the other
-  /// (rt_core/geometry/directions.hpp), and a region has one contact. Above zero, so that walls at
+  /// angle of this cosine: the least distance of one says nothing of the other
+  /// (rt_core/geometry/directions.hpp). Above zero, so that walls at
   /// a right angle are two whatever rounding says.
   double walls_cosine = 0.1;
   /// ... unless smaller than this share of `radius`: roughness below it is one feature.
@@ -34,8 +34,8 @@ struct RegionOptions {
 
 /// Regions for contacts within delta_rel, which is relative to the object's radius, above zero: a
 /// little larger than a contact, for two balls of radius 1 that touch are within delta in a radius
-/// of sqrt(delta). Smaller ones cost time, larger ones make the force jump (docs/BENCHMARKS.md,
-/// `bench_regions ... divided`). Between .03 and .25 whatever delta_rel. O(1)
+/// of sqrt(delta). Smaller ones cost time, larger ones tell less of
+/// where they are near. Between .03 and .25 whatever delta_rel. O(1)
 RegionOptions region_options(double delta_rel);
 
 /// A binary tree over runs of `faces`; node 0 is the root, children follow their parent.
