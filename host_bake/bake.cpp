@@ -260,9 +260,7 @@ std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const Ba
   if (progress) progress("regions", 0);
   const RegionTree regions = timed(report, "regions", [&] {
     if (options.engine == ForEngine::levels) return RegionTree{};
-    RegionOptions divided = region_options(options.delta_rel);
-    divided.crossing_faces = surface.check.crossing_faces;
-    return build_regions(normal, divided);
+    return build_regions(normal, region_options(options.delta_rel), surface.check.crossing_faces);
   });
   if (progress) progress("pack", 0);
   std::vector<std::byte> bytes = timed(report, "pack", [&] {

@@ -11,11 +11,11 @@ namespace palpate {
 
 /// Parts of a tick, in their order.
 enum class Stage : std::uint8_t {
-  start,        ///< last tick's front or witnesses, and what of them is near
-  refine,       ///< queries and splits, or searches of regions
+  start,        ///< last tick's front; the regions engine's guess of what carries
+  refine,       ///< queries and splits; the regions engine's distances and proof
   interpolate,  ///< between levels (levels engine)
   upkeep,       ///< raising the front, tightening the certificate (levels engine)
-  settle,       ///< contacts and bounds of what is not resolved; all contacts of the regions engine
+  settle,       ///< contacts and bounds of what is not resolved (levels engine)
   force,        ///< contacts into a wrench
 };
 inline constexpr std::uint32_t kStages = 6;

@@ -216,11 +216,10 @@ void certify_push(const Engine& engine, const regions::ContactSearchResult& foun
 /// nothing.
 struct Distances {
   regions::MinimaResult minima;
-  bool outside = false;                            ///< nothing is inside
-  bool ended = false;                              ///< by the budget
-  [[nodiscard]] double lower_m() const noexcept {  ///< overlap counts as 0
-    return outside ? minima.unresolved_lower_m : 0;
-  }
+  bool outside = false;  ///< nothing is inside
+  bool ended = false;    ///< by the budget
+  /// Of what has not been found; overlap counts as 0.
+  [[nodiscard]] double lower_m() const noexcept { return outside ? minima.unresolved_lower_m : 0; }
 };
 
 Distances find_distances(Engine& engine, regions::ContactSearch& search, Meter& meter,
@@ -238,13 +237,12 @@ Distances find_distances(Engine& engine, regions::ContactSearch& search, Meter& 
 Found find_by_regions(Engine& engine, const Budget& budget, Meter& meter,
                       force::PushWrench& push) noexcept {
   constexpr std::uint64_t kCheapProof = 500;  // units
-  constexpr std::uint64_t kGuess[] = {3, 4};
   const Settings& s = engine.settings;
   const double k = s.stiffness_N_per_m;
   const bool felt = k > 0 || !s.exact;
   const double tolerance_m = !s.exact && k > 0 ? s.force_tolerance_N / (2 * k) : 0;
   regions::ContactSearch search(engine.search, {s.delta_m, tolerance_m});
-  Meter first(part_of(budget, kGuess[0], kGuess[1]), {});
+  Meter first(part_of(budget, 3, 4), {});
   Pace first_pace(first);
   if (felt) search.guess(first_pace);
   meter.charge(first.used());

@@ -215,7 +215,8 @@ Status configure(Engine& engine, const Settings& settings) noexcept;
 /// normalised)
 /// @param out    written only where the result is Status::ok
 /// Errors: bad_pose, bad_argument. Cost: the budget and its reserve, plus at most one convex query
-/// (regions engine: 40 work units) and a tail that is linear in the front and in contacts *
+/// (regions engine: the closest points known of each near region, or the contacts of one vertex or
+/// edge) and a tail that is linear in the front and in contacts *
 /// log(contacts), and for which time is left before the deadline. An exact query of the levels
 /// engine that has no budget is done twice in the first tick in which its nodes or contacts do not
 /// fit. No allocation, no lock, no recursion, bounded stack.

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "host_bake/mesh/mesh.hpp"
@@ -23,19 +22,17 @@ struct RegionOptions {
   double cosine = 0.2;
   /// So are those whose normals fall into two groups, the means of which are farther apart than the
   /// angle of this cosine: the least distance of one says nothing of the other
-  /// (rt_core/geometry/directions.hpp). Above zero, so that walls at
-  /// a right angle are two whatever rounding says.
+  /// (rt_core/geometry/directions.hpp). Above zero, so that walls at a right angle are two whatever
+  /// rounding says.
   double walls_cosine = 0.1;
   /// ... unless smaller than this share of `radius`: roughness below it is one feature.
   double least_share = 0.25;
-  /// Faces of the mesh that cross others: what is inside is not told by them.
-  std::span<const std::size_t> crossing_faces{};
 };
 
 /// Regions for contacts within delta_rel, which is relative to the object's radius, above zero: a
 /// little larger than a contact, for two balls of radius 1 that touch are within delta in a radius
-/// of sqrt(delta). Smaller ones cost time, larger ones tell less of
-/// where they are near. Between .03 and .25 whatever delta_rel. O(1)
+/// of sqrt(delta). Smaller ones cost time, larger ones tell less
+/// of where they are near. Between .03 and .25 whatever delta_rel. O(1)
 RegionOptions region_options(double delta_rel);
 
 /// A binary tree over runs of `faces`; node 0 is the root, children follow their parent.

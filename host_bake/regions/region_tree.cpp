@@ -309,8 +309,9 @@ class Builder {
 
 }  // namespace
 
-RegionTree build_regions(const NormalMesh& mesh, const RegionOptions& options) {
-  return Builder(mesh, divide(mesh, options)).run(options.crossing_faces);
+RegionTree build_regions(const NormalMesh& mesh, const RegionOptions& options,
+                         std::span<const std::size_t> crossing_faces) {
+  return Builder(mesh, divide(mesh, options)).run(crossing_faces);
 }
 
 }  // namespace palpate::bake

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "host_bake/mesh/mesh.hpp"
@@ -25,9 +26,11 @@ struct RegionTree {
 /// fitted box. The root is never a region itself, so that every region has a parent that holds its
 /// box.
 ///
+/// @param crossing_faces  of the mesh, by index: what is inside is not told by them
 /// RegionTriangle::piece is left kNone: pack() knows the image's pieces. Deterministic, also across
 /// numbers of threads. Throws InputRefused where a limit of the format is passed. O(n log^2 n), and
 /// the square of the number of regions.
-RegionTree build_regions(const NormalMesh& mesh, const RegionOptions& options);
+RegionTree build_regions(const NormalMesh& mesh, const RegionOptions& options,
+                         std::span<const std::size_t> crossing_faces = {});
 
 }  // namespace palpate::bake

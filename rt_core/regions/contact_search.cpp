@@ -37,6 +37,7 @@ constexpr double kLikelyExcess = 0.01;
 constexpr std::uint32_t kLookedPerUnit = 8;
 constexpr std::uint32_t kScannedPerUnit = 64;
 
+/// The budget ended a count.
 constexpr std::uint32_t kUnknownCount = 0xffffffffu;
 
 struct HigherPriority {

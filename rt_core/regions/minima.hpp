@@ -2,8 +2,8 @@
 // All contacts of a pair: the least distance of every region of a from b, where that is below
 // delta, each proved.
 //
-// Beyond the paper; docs/DESIGN.md gives the reasons. The force does not need them: it is found by
-// contact_search.hpp.
+// Beyond the paper; docs/DESIGN.md gives the reasons. A search for the force (contact_search.hpp)
+// learns from them which edges touch.
 #pragma once
 
 #include <cstdint>
