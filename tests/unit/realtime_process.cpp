@@ -144,7 +144,8 @@ TEST_F(Run, recorded_motion_moves_the_mock_hand_once) {
   ASSERT_TRUE(outcome.status != 2 && outcome.status != 3) << outcome.err;
   EXPECT_EQ(outcome.err.find("stands still"), std::string::npos) << outcome.err;
   const json j = json::parse(outcome.out);
-  EXPECT_EQ(j["ticks"].get<int>() + j["missed"].get<int>(), 500);
+  // A last tick that ends late passes the end of the run.
+  EXPECT_GE(j["ticks"].get<int>() + j["missed"].get<int>(), 500);
   if (!j["faults"].empty()) GTEST_SKIP() << "the machine is too busy to hold the loop up";
   EXPECT_GT(j["force_N"]["max"].get<double>(), 0.01);
 }
