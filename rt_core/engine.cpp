@@ -6,13 +6,15 @@
 
 #include "rt_core/base/meter.hpp"
 #include "rt_core/force/constraints.hpp"
-#include "rt_core/force/penalty.hpp"
+#include "rt_core/force/wrench.hpp"
 #include "rt_core/palpate_rt.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr double kUnitQuaternion = 1e-3;
+/// Units that proving a push may take where no proof is asked for.
+constexpr std::uint64_t kCheapProof = 500;
 /// What rounding of float vertices, transforms and queries leaves of a distance, in units of the
 /// larger radius.
 constexpr double kNumericalError = 5e-7;
@@ -92,20 +94,6 @@ Certificate certify_levels(const Engine& engine, const levels::QueryResult& foun
   return c;
 }
 
-Found find_by_levels(Engine& engine, Meter& meter) noexcept {
-  const levels::QueryResult found =
-      levels::query(engine.levels, rules_of(engine.settings), meter, engine.tally);
-  if (found.queries > 0) {
-    follow(engine.levels.query_ns, meter.refined_ns() / found.queries);
-  }
-  return {.contacts = found.contacts,
-          .tail_contacts = found.contacts,
-          .min_distance_m = found.min_distance_m,
-          .front_nodes = engine.levels.tree.front().size(),
-          .queries = found.queries,
-          .certificate = certify_levels(engine, found)};
-}
-
 /// So much of a budget, from now on.
 Budget part_of(const Budget& budget, std::uint64_t numerator, std::uint64_t denominator) noexcept {
   constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
@@ -155,17 +143,16 @@ force::PushWrench wrench_of(Engine& engine, const regions::ContactSearchResult& 
   const std::size_t placed =
       found.places_proved ? found.contacts : add_likely_places(engine, found, meter);
   return force::push_wrench(engine.search.constraints.first(placed), found.push,
-                            engine.push_points.first(placed), tool, engine.settings,
-                            engine.force.places);
+                            engine.push_points.first(placed), tool, engine.settings, engine.places);
 }
 
-/// Adds contacts of a search that are nearer than delta to those of the minima: those that carry,
+/// Adds contacts of a search that are nearer than delta to those that there are: those that carry,
 /// and the nearest points where there are none, or something is inside and crosses nothing.
 /// @return how many are reported then
 std::uint32_t report(const Engine& engine, const regions::ContactSearchResult& found,
-                     const regions::MinimaResult& minima) noexcept {
+                     std::uint32_t contacts, double min_distance_m) noexcept {
   const double delta_m = engine.settings.delta_m;
-  std::uint32_t count = minima.contacts;
+  std::uint32_t count = contacts;
   const auto add = [&](Contact c, double multiplier) {
     if (c.distance_m >= delta_m) return;
     const double apart_m = norm(c.point_a_m - c.point_b_m);
@@ -177,7 +164,7 @@ std::uint32_t report(const Engine& engine, const regions::ContactSearchResult& f
   for (const force::Carrying& c : found.push.carrying_contacts()) {
     add(engine.search.contacts[c.index], c.multiplier);
   }
-  const bool contained = found.nearest.distance_m < 0 && minima.min_distance_m > 0;
+  const bool contained = found.nearest.distance_m < 0 && min_distance_m > 0;
   if (count == 0 || contained) add(found.nearest, 0);
   return count;
 }
@@ -236,7 +223,6 @@ Distances find_distances(Engine& engine, regions::ContactSearch& search, Meter& 
 /// alone.
 Found find_by_regions(Engine& engine, const Budget& budget, Meter& meter,
                       force::PushWrench& push) noexcept {
-  constexpr std::uint64_t kCheapProof = 500;  // units
   const Settings& s = engine.settings;
   const double k = s.stiffness_N_per_m;
   const bool felt = k > 0 || !s.exact;
@@ -271,7 +257,7 @@ Found find_by_regions(Engine& engine, const Budget& budget, Meter& meter,
   engine.tally.lap(Stage::refine, meter.refined_ns());
   const regions::ContactSearchResult& found = search.conclude();
   push = wrench_of(engine, found, meter);
-  const std::uint32_t contacts = report(engine, found, minima);
+  const std::uint32_t contacts = report(engine, found, minima.contacts, minima.min_distance_m);
   const double nearest_m = least_distance_m(engine.contacts.first(contacts));
   Found out{.contacts = contacts,
             .clusters = found.push.carrying_count,
@@ -294,6 +280,82 @@ Found find_by_regions(Engine& engine, const Budget& budget, Meter& meter,
   return out;
 }
 
+/// The least push of contacts of pieces; sets their weights. What the surfaces push is only known
+/// to be no more than what contacts at the least possible distance push from all sides.
+void push_of_pieces(Engine& engine, Found& found, force::PushWrench& out) noexcept {
+  const Settings& settings = engine.settings;
+  const Pose& tool = engine.poses[engine.tool];
+  const std::span<Contact> contacts = engine.contacts.first(found.contacts);
+  const std::span<force::PushConstraint> constraints =
+      engine.search.constraints.first(contacts.size());
+  const std::span<force::PushPoint> points = engine.push_points.first(contacts.size());
+  force::set_constraints(contacts, engine.pairs, engine.tool, settings.delta_m, constraints);
+  const force::PushResult push = force::least_push(constraints);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    points[i].arm_m = contacts[i].centre_m - tool.position_m;
+    contacts[i].weight = 0;
+  }
+  for (const force::Carrying& c : push.carrying_contacts()) {
+    Contact& contact = contacts[c.index];
+    contact.weight = 2 * c.multiplier / (settings.delta_m - contact.distance_m);
+  }
+  out = force::push_wrench(constraints, push, points, tool, settings, engine.places);
+  found.clusters = push.carrying_count;
+  found.certificate.truncated_by_memory |= out.places_full;
+  const double unit_m = largest_unit_m(engine.states);  // nothing is deeper
+  const double nearest_m = found.contacts > 0 ? found.min_distance_m : settings.delta_m;
+  const double lower_m = nearest_m > 0 ? nearest_m - found.certificate.error_bound_m : -unit_m;
+  const double strength_m = settings.delta_m - (lower_m > 0 ? lower_m : -unit_m);
+  if (strength_m > 0) {
+    found.certificate.force_bound_N =
+        2 * settings.stiffness_N_per_m * (norm(push.push.vector) + force::most_push(strength_m));
+  }
+}
+
+/// Distances by the front of the levels. Its contacts give the force while bodies are apart; where
+/// they overlap, and in exact queries, the surfaces do, if the images have them and, but for
+/// overlap, the budget proves it. While bodies overlap they have half of the budget.
+Found find_by_levels(Engine& engine, const Budget& budget, Meter& meter,
+                     force::PushWrench& push) noexcept {
+  const Settings& s = engine.settings;
+  Meter front(engine.overlapping ? part_of(budget, 1, 2) : budget, engine.tail);
+  const levels::QueryResult found = levels::query(engine.levels, rules_of(s), front, engine.tally);
+  if (found.queries > 0) follow(engine.levels.query_ns, front.refined_ns() / found.queries);
+  meter.charge(front.used());
+  Found out{.contacts = found.contacts,
+            .tail_contacts = found.contacts,
+            .min_distance_m = found.min_distance_m,
+            .front_nodes = engine.levels.tree.front().size(),
+            .queries = found.queries,
+            .certificate = certify_levels(engine, found)};
+  engine.overlapping = engine.overlapping || found.min_distance_m <= 0;
+  const bool felt = s.stiffness_N_per_m > 0 || !s.exact;
+  if (felt && !engine.search.sides.empty() && (s.exact || engine.overlapping)) {
+    Pace pace(meter);
+    regions::ContactSearch search(engine.search, {s.delta_m, 0});
+    search.guess(pace);
+    if (!s.exact) pace.limit(kCheapProof);
+    search.prove_push(pace);
+    search.prove_places(pace);
+    pace.no_limit();
+    meter.begin_tail();
+    const regions::ContactSearchResult& surfaces = search.conclude();
+    engine.overlapping = found.min_distance_m <= 0 || surfaces.nearest.distance_m < 0;
+    certify_push(engine, surfaces, surfaces.places_proved, pace, out.certificate);
+    if (surfaces.places_proved || (engine.overlapping && surfaces.contacts > 0)) {
+      push = wrench_of(engine, surfaces, meter);
+      out.clusters = surfaces.push.carrying_count;
+      out.contacts = report(engine, surfaces, found.contacts, found.min_distance_m);
+      out.min_distance_m = least_distance_m(engine.contacts.first(out.contacts));
+      out.certificate.truncated_by_memory |= push.places_full;
+      return out;
+    }
+  }
+  meter.begin_tail();
+  push_of_pieces(engine, out, push);
+  return out;
+}
+
 }  // namespace
 
 Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
@@ -309,23 +371,13 @@ Status tick(Engine& engine, std::span<const Pose> poses, const Budget& budget,
   }
   Meter meter(budget, engine.tail);
   engine.tally.begin_tick();
-  Found found;
-  if (settings.engine == EngineKind::regions) {
-    force::PushWrench push;
-    found = find_by_regions(engine, budget, meter, push);
-    out.wrench = force::limited(push.wrench, settings);
-    out.stiffness = push.stiffness;
-    out.clusters = found.clusters;
-  } else {
-    found = find_by_levels(engine, meter);
-    const force::Penalty penalty =
-        force::penalty(engine.contacts.first(found.contacts), engine.pairs, engine.tool,
-                       engine.poses[engine.tool], settings, engine.force);
-    out.wrench = force::limited(penalty.wrench, settings);
-    out.stiffness = penalty.stiffness;
-    out.clusters = static_cast<std::uint32_t>(2 * penalty.directions + 1) / 2;  // rounded
-    found.certificate.truncated_by_memory |= penalty.places_full;
-  }
+  force::PushWrench push;
+  const Found found = settings.engine == EngineKind::regions
+                          ? find_by_regions(engine, budget, meter, push)
+                          : find_by_levels(engine, budget, meter, push);
+  out.wrench = force::limited(push.wrench, settings);
+  out.stiffness = push.stiffness;
+  out.clusters = found.clusters;
   out.contacts = engine.contacts.first(found.contacts);
   out.min_distance_m =
       found.contacts > 0 ? found.min_distance_m : std::numeric_limits<double>::quiet_NaN();

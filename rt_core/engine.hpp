@@ -6,7 +6,7 @@
 #include <span>
 
 #include "rt_core/base/tally.hpp"
-#include "rt_core/force/penalty.hpp"
+#include "rt_core/force/places.hpp"
 #include "rt_core/force/wrench.hpp"
 #include "rt_core/levels/levels_engine.hpp"
 #include "rt_core/palpate_rt.hpp"
@@ -28,8 +28,9 @@ class Engine {
   regions::ContactMemory search;
   regions::MinimaMemory minima;
   std::span<Contact> contacts;
-  std::span<force::PushPoint> push_points;  // [search.contacts]
-  force::Workspace force;
+  std::span<force::PushPoint> push_points;  // [contacts], as search.constraints
+  force::Places places;
+  bool overlapping = false;           // pieces of the levels engine did, in the last tick
   TailTime tail;                      // of the ticks so far
   [[no_unique_address]] Tally tally;  // last: its size is a switch of the build
 };

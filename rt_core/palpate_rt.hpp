@@ -72,7 +72,7 @@ struct Settings {
   Bounds bounds = Bounds::tight;
   /// Without a budget it changes nothing.
   Order order = Order::force;
-  bool interpolate = true;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
+  bool interpolate = false;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
 
   /// Regions engine: a tick that is not exact goes on until the certified error of the force is no
   /// more; 0: until nothing that is likely to change it is left, and what is cheap to prove is
@@ -157,9 +157,9 @@ struct Certificate {
                              ///< out before baking (Header::source_deviation_rel)
   double s_worst =
       0;  ///< largest weighted surface deviation left unrefined, relative to the radius
-  /// Regions engine: how far the force is off at most, before limits (force/least_push.hpp). It
-  /// counts what detail was left out of both bodies before baking, of which no tolerance takes
-  /// account.
+  /// How far the force is off at most, before limits (force/least_push.hpp). It counts what detail
+  /// was left out of both bodies before baking, of which no tolerance takes account. Levels engine,
+  /// where the surfaces have not been asked: hardly more than that the force is finite.
   double force_bound_N = 0;
   std::uint64_t units_used = 0;
   bool truncated_by_time = false;  ///< the clock ended refinement
@@ -177,12 +177,12 @@ struct Certificate {
 struct TickResult {
   Wrench wrench;  ///< on the tool, world axes, torque about the origin of the tool's body frame
   /// How the wrench falls as the tool moves by a small twist, with shares and normals held; J_i =
-  /// [n_i | r_i x n_i]. Levels: k times the sum of share_i J_i^T J_i. Regions: 2 k J^T M^-1 J of
-  /// the contacts that carry, M their Gram matrix. Positive semidefinite, before limits. With it a
-  /// faster loop may render between ticks: wrench - stiffness * (twist since the tick).
+  /// [n_i | r_i x n_i]: 2 k J^T M^-1 J of the contacts that carry, M their Gram matrix. Positive
+  /// semidefinite, before limits. With it a faster loop may render between ticks: wrench -
+  /// stiffness * (twist since the tick).
   Matrix6 stiffness;
   std::span<const Contact> contacts;  ///< valid until the next tick; order is deterministic
-  std::uint32_t clusters = 0;  ///< directions that are felt: how often the stiffness is, rounded
+  std::uint32_t clusters = 0;         ///< contacts that carry the push, at most nine
   double min_distance_m =
       std::numeric_limits<double>::quiet_NaN();  ///< least over contacts; NaN where there are none
   std::uint64_t front_nodes =

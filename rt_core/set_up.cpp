@@ -44,10 +44,9 @@ struct Layout {
   std::span<levels::PairState> states;
   std::span<Pose> poses;
   std::span<Contact> contacts;
-  std::span<force::Felt> felt;
-  std::span<force::Ranked> ranking;
-  std::span<force::DeepCells> cells;
-  std::span<force::Place> copies, places;
+  std::span<force::PushConstraint> constraints;
+  std::span<force::PushPoint> push_points;
+  std::span<force::Place> places;
   // Levels engine.
   std::span<levels::Node> nodes;
   std::span<std::uint32_t> front, blending, stopped;
@@ -66,8 +65,6 @@ struct Layout {
   std::span<regions::SearchScratch> search;
   // The search for the least push.
   std::span<Contact> measured;
-  std::span<force::PushConstraint> constraints;
-  std::span<force::PushPoint> push_points;
   std::span<regions::SideMemory> sides;
   std::span<regions::SideView> views;
   std::span<contact::Scratch> contact_scratch;
@@ -95,6 +92,19 @@ std::size_t regions_of(const Scene& scene) noexcept {
   return all;
 }
 
+/// What the search for the least push reads.
+bool has_surface(const ImageView& image) noexcept {
+  return !image.regions.empty() && !image.surface_vertices.empty() &&
+         image.proximity_grid != nullptr;
+}
+
+bool have_surfaces(const Scene& scene) noexcept {
+  for (const ImageView& body : scene.bodies) {
+    if (!has_surface(body)) return false;
+  }
+  return true;
+}
+
 /// What both sides of all pairs need.
 struct SideCounts {
   std::size_t regions = 0, vertices = 0, edges = 0;
@@ -112,8 +122,7 @@ SideCounts sides_of(const Scene& scene) noexcept {
 }
 
 /// What limits ask for, but no more than vertices and edges usually have.
-std::size_t contacts_for(const Scene& scene, const Limits& limits, EngineKind kind) noexcept {
-  if (kind == EngineKind::levels) return limits.contacts;
+std::size_t contacts_for(const Scene& scene, const Limits& limits) noexcept {
   const SideCounts counts = sides_of(scene);
   constexpr std::size_t kOfVertex = 8;
   constexpr std::size_t kOfEdge = 2;
@@ -128,20 +137,12 @@ void lay_out_levels(Arena& arena, const Limits& limits, Layout& out) noexcept {
   out.stopped = arena.array<std::uint32_t>(limits.nodes);
   out.scratch = arena.array<convex::PenetrationScratch>(1);
   out.pressure = arena.array<convex::PressureScratch>(1);
-  out.felt = arena.array<force::Felt>(limits.contacts);
-  out.ranking = arena.array<force::Ranked>(limits.contacts);
-  out.cells = arena.array<force::DeepCells>(1);
-  // Contacts that are nobody's copies have corners of their own.
-  out.copies = arena.array<force::Place>(
-      smaller(force::Spot::kCorners * limits.contacts, force::Places::room_for(limits.contacts)));
 }
 
 void lay_out_search(Arena& arena, const Scene& scene, const Limits& limits, Layout& out) noexcept {
   const SideCounts counts = sides_of(scene);
-  const std::size_t contacts = contacts_for(scene, limits, EngineKind::regions);
+  const std::size_t contacts = contacts_for(scene, limits);
   out.measured = arena.array<Contact>(contacts);
-  out.constraints = arena.array<force::PushConstraint>(contacts);
-  out.push_points = arena.array<force::PushPoint>(contacts);
   out.sides = arena.array<regions::SideMemory>(2 * scene.pairs.size());
   out.views = arena.array<regions::SideView>(2 * scene.pairs.size());
   out.contact_scratch = arena.array<contact::Scratch>(1);
@@ -178,15 +179,18 @@ Layout lay_out(Arena& arena, const Scene& scene, const Limits& limits, EngineKin
   out.engine = arena.array<Engine>(1);
   out.states = arena.array<levels::PairState>(scene.pairs.size());
   out.poses = arena.array<Pose>(scene.bodies.size());
-  const std::size_t contacts = contacts_for(scene, limits, kind);
+  const std::size_t contacts =
+      kind == EngineKind::levels ? limits.contacts : contacts_for(scene, limits);
   out.contacts = arena.array<Contact>(contacts);
+  out.constraints = arena.array<force::PushConstraint>(contacts);
+  out.push_points = arena.array<force::PushPoint>(contacts);
   out.places = arena.array<force::Place>(limits.clusters);
   if (kind == EngineKind::levels) {
     lay_out_levels(arena, limits, out);
   } else {
     lay_out_regions(arena, scene, out);
-    lay_out_search(arena, scene, limits, out);
   }
+  if (have_surfaces(scene)) lay_out_search(arena, scene, limits, out);
   return out;
 }
 
@@ -216,8 +220,6 @@ void attach_sides(const Layout& layout, const Scene& scene) noexcept {
 
 void attach_search(const Layout& layout, const Scene& scene, Engine& e) noexcept {
   attach_sides(layout, scene);
-  e.search.constraints = layout.constraints;
-  e.push_points = layout.push_points;
   e.search.pairs = layout.states;
   e.search.contacts = layout.measured;
   e.search.kernels = &regions::best_kernels();
@@ -239,11 +241,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.poses = layout.poses;
   e.states = layout.states;
   e.contacts = layout.contacts;
-  e.force.felt = layout.felt;
-  e.force.ranking = layout.ranking;
-  e.force.cells = layout.cells.data();
-  e.force.copies.attach(layout.copies);
-  e.force.places.attach(layout.places);
+  e.places.attach(layout.places);
   e.levels.pairs = e.minima.pairs = layout.states;
   e.levels.contacts = e.minima.contacts = layout.contacts;
   e.levels.tree.attach(layout.nodes, layout.front, layout.blending);
@@ -263,7 +261,9 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.minima.swept = layout.swept;
   e.minima.lasting = layout.lasting;
   e.minima.search = layout.search.data();
-  attach_search(layout, scene, e);
+  e.search.constraints = layout.constraints;
+  e.push_points = layout.push_points;
+  if (!layout.sides.empty()) attach_search(layout, scene, e);
   for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
     attach(layout.states[i], scene, scene.pairs[i]);
   }
@@ -324,10 +324,7 @@ bool all_fine_enough(const Engine& engine, const Settings& settings) noexcept {
 }
 
 bool serves(const ImageView& image, const Settings& settings) noexcept {
-  if (image.pieces.empty()) return false;
-  if (settings.engine == EngineKind::levels) return true;
-  return !image.regions.empty() && !image.surface_vertices.empty() &&
-         image.proximity_grid != nullptr;
+  return !image.pieces.empty() && (settings.engine == EngineKind::levels || has_surface(image));
 }
 
 /// FNV-1a (Fowler, Noll, Vo) of all that the layout and the meaning of an engine's memory follow

@@ -47,9 +47,10 @@ RECORD = np.dtype(
         ("state", "u1"),
         ("truncated", "u1"),
         ("faults", "<u2"),
+        ("force_bound_N", "<f8"),
     ]
 )
-assert _HEADER.itemsize == 64 and RECORD.itemsize == 208
+assert _HEADER.itemsize == 64 and RECORD.itemsize == 216
 
 
 @dataclass
@@ -59,8 +60,8 @@ class Trace:
     records  (ticks,) structured array, mapped from the file: tick; time_ns since the start; the
              tool's position_m (3,) and orientation (4,), w x y z; rendered_force_N and
              rendered_torque_Nm (3,), the engine's; sent_force_N and sent_torque_Nm (3,), the
-             device's, about the tool's origin; min_distance_m; error_bound_m and s_worst, the
-             certificate; energy_J; latency_ns, tick_ns, state_age_ns; contacts; ...
+             device's, about the tool's origin; min_distance_m; error_bound_m, force_bound_N and s_worst,
+             the certificate; energy_J; latency_ns, tick_ns, state_age_ns; contacts; ...
     rate_Hz  of the loop
     dropped  ticks that left no record
     scene    path of the scene
@@ -85,7 +86,7 @@ def read_trace(path):
         if len(start) < _HEADER.itemsize or not start.startswith(b"PALTRACE"):
             raise Error(f"{path}: not a trace: give a file of 'palpate run -o'")
         header = np.frombuffer(start, _HEADER)[0]
-        if header["version"] != 1 or header["record_bytes"] != RECORD.itemsize:
+        if header["version"] != 2 or header["record_bytes"] != RECORD.itemsize:
             raise Error(f"{path}: a trace of another version: make it with this version's 'palpate run -o'")
         scene = file.read(int(header["scene_bytes"])).decode(errors="replace")
     offset, count = int(header["header_bytes"]), int(header["records"])

@@ -89,6 +89,13 @@ inline constexpr std::uint32_t kPushSteps = 100;
 /// The largest `missing` of which push_error() is no more than `error`. O(1)
 [[nodiscard]] double tolerated_violation(const Push& push, double error) noexcept;
 
+/// The largest vector of a push that constraints of at most `strength` >= 0 can have, however many:
+/// S = strength I alone satisfies them all. O(1)
+[[nodiscard]] constexpr double most_push(double strength) noexcept {
+  constexpr double kSqrt3 = 1.7320508075688773;
+  return kSqrt3 * strength;
+}
+
 /// By how much two pushes differ in any direction, at most. O(1)
 [[nodiscard]] double difference(const Push& a, const Push& b) noexcept;
 

@@ -60,7 +60,7 @@ std::uint32_t Places::find(std::int32_t x, std::int32_t y, std::int32_t z) noexc
   return Spot::kNone;
 }
 
-Spot Places::add(Vec3d point_m, double mass, double part) noexcept {
+Spot Places::add(Vec3d point_m, double mass) noexcept {
   Spot spot;
   const Vec3d p = per_m_ * point_m;
   if (per_m_ == 0 || !numbered(p.x) || !numbered(p.y) || !numbered(p.z)) return spot;
@@ -83,15 +83,15 @@ Spot Places::add(Vec3d point_m, double mass, double part) noexcept {
     if (spot.place[i] == Spot::kNone) continue;
     Place& place = table_[spot.place[i]];
     place.most = most(place.most, share * mass);
-    place.sum += share * part;
+    place.sum += share * mass;
   }
   return spot;
 }
 
-double Places::share(const Spot& spot, double part) const noexcept {
+double Places::share(const Spot& spot, double mass) const noexcept {
   double sum = 0;
   for (std::size_t i = 0; i < Spot::kCorners; ++i) {
-    double brought = spot.share[i] * part;
+    double brought = spot.share[i] * mass;
     if (spot.place[i] != Spot::kNone) {
       const Place& place = table_[spot.place[i]];
       if (place.most < place.sum) brought *= place.most / place.sum;

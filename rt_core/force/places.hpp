@@ -16,7 +16,7 @@ struct Place {
   std::int32_t x = 0, y = 0, z = 0;
   std::uint32_t tick = 0;  ///< when it was last in use
   double most = 0;         ///< largest mass brought by one contact
-  double sum = 0;          ///< of all parts brought
+  double sum = 0;          ///< of all masses brought
 };
 
 /// Where a contact has brought its mass: the corners of its tetrahedron, a sixth of a cube.
@@ -60,12 +60,11 @@ class Places {
   /// Brings a contact. O(1): at most 128 looks for each of four corners
   /// @param point_m  in the axes of the grid
   /// @param mass     of the contact, >= 0
-  /// @param part     what it may have of that: all, or less where it is one of several copies
-  Spot add(Vec3d point_m, double mass, double part) noexcept;
+  Spot add(Vec3d point_m, double mass) noexcept;
 
-  /// What is handed out, after all have brought theirs, for a contact that was brought with this
-  /// part: at most that. O(1)
-  [[nodiscard]] double share(const Spot& spot, double part) const noexcept;
+  /// What is handed out, after all have brought theirs, for a contact of this mass: at most that.
+  /// O(1)
+  [[nodiscard]] double share(const Spot& spot, double mass) const noexcept;
 
   /// Whether corners found no room since begin(): contacts there keep their mass.
   [[nodiscard]] bool full() const noexcept { return full_; }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/force/wrench.hpp"
 
-#include "rt_core/geometry/directions.hpp"
-
 namespace palpate::force {
 namespace {
 
@@ -27,11 +25,16 @@ void weigh(std::span<const PushConstraint> constraints, const Push& push,
   }
   places.begin(settings.cluster_radius_m, taking_part);
   for (PushPoint& p : points) {
-    if (p.mass > 0) p.spot = places.add(to_tool * p.arm_m, p.mass, p.mass);
+    if (p.mass > 0) p.spot = places.add(to_tool * p.arm_m, p.mass);
   }
   for (PushPoint& p : points) {
     if (p.mass > 0) p.mass = places.share(p.spot, p.mass);
   }
+}
+
+Vec3d limited(Vec3d v, double most) noexcept {
+  const double length = norm(v);
+  return length > most ? (most / length) * v : v;
 }
 
 /// Where pushes along n act.
@@ -105,6 +108,11 @@ PushWrench push_wrench(std::span<const PushConstraint> constraints, const PushRe
   }
   add_stiffness(rows, normals, push.carrying_count, twice_k, out.stiffness);
   return out;
+}
+
+Wrench limited(const Wrench& wrench, const Settings& settings) noexcept {
+  return {limited(wrench.force_N, settings.max_force_N),
+          limited(wrench.torque_Nm, settings.max_torque_Nm)};
 }
 
 }  // namespace palpate::force

@@ -34,7 +34,7 @@ position = [0.0, 0.0, 2.0]
 t_s = 0.5
 position = [0.0, 0.0, 1.8]
 """
-HEADER, RECORD = struct.Struct("<8sIIIIQQd16x"), struct.Struct("<QQ3d4d3d3d3f3f4d7IBBH")
+HEADER, RECORD = struct.Struct("<8sIIIIQQd16x"), struct.Struct("<QQ3d4d3d3d3f3f4d7IBBHd")
 
 
 class Report(unittest.TestCase):
@@ -58,13 +58,13 @@ class Report(unittest.TestCase):
         """A trace as docs/REALTIME.md has it; rows of (time_ns, z, sent fz, state, faults)."""
         path = self.path(scene).encode()
         padded = path + bytes(-len(path) % 8)
-        data = HEADER.pack(b"PALTRACE", 1, RECORD.size, HEADER.size + len(padded), len(path), len(rows), 0, 1000.0) + padded
+        data = HEADER.pack(b"PALTRACE", 2, RECORD.size, HEADER.size + len(padded), len(path), len(rows), 0, 1000.0) + padded
         for tick, (time, z, force, state, faults) in enumerate(rows):
             pose = (0, 0, z, 1, 0, 0, 0)
             wrench = (0, 0, force, 0, 0, 0)
             certificate = (math.nan if force == 0 else -0.01, 1e-6, 0, 2e-3)
             counts = (1500, 200_000, 250_000, 3, 1, 40, 7)
-            data += RECORD.pack(tick, time, *pose, *wrench, *wrench, *certificate, *counts, state, 1, faults)
+            data += RECORD.pack(tick, time, *pose, *wrench, *wrench, *certificate, *counts, state, 1, faults, 0.5)
         self.write("run.trace", data)
 
     def mcap(self, *words):

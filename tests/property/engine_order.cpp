@@ -73,7 +73,7 @@ TEST(EngineOrder, more_budget_is_felt_no_worse) {
 
 TEST(EngineOrder, force_first_is_nearer_to_the_force_than_deviation_first) {
   const std::vector<TickResult> truth = answers(settings(Order::force), {});
-  for (const std::uint64_t units : {32u, 64u}) {
+  for (const std::uint64_t units : {64u, 128u, 256u}) {
     const double by_force = force_error(answers(settings(Order::force), {.units = units}), truth);
     const double by_deviation =
         force_error(answers(settings(Order::deviation), {.units = units}), truth);

@@ -20,7 +20,7 @@ namespace {
 constexpr double kDelta_m = 0.0005;
 const std::string kTicksHeader =
     "tick,t,fx,fy,fz,tx,ty,tz,contacts,clusters,min_distance,front,queries,time_ns,truncated,s_"
-    "worst,error_bound";
+    "worst,error_bound,force_bound";
 const std::string kContactsHeader =
     "tick,pair,ax,ay,az,bx,by,bz,nx,ny,nz,distance,piece_a,lod_a,piece_b,lod_b,weight";
 

@@ -83,7 +83,7 @@ bool read(std::string_view line, std::size_t expected_tick, TickRow& out) {
       out.clusters;
   fields.optional(out.min_distance_m);
   fields >> out.front_nodes >> out.queries >> out.time_ns >> truncated >> out.certificate.s_worst >>
-      out.certificate.error_bound_m;
+      out.certificate.error_bound_m >> out.certificate.force_bound_N;
   out.certificate.truncated_by_time = truncated != 0;
   if (out.contacts > 0) out.certificate.contact = ContactStatus::found;
   return fields.done() && tick == expected_tick;
@@ -103,7 +103,7 @@ std::string ticks_csv(std::span<const TickRow> rows) {
       row << r.min_distance_m;
     }
     row << r.front_nodes << r.queries << r.time_ns << (r.certificate.truncated() ? 1 : 0)
-        << r.certificate.s_worst << r.certificate.error_bound_m;
+        << r.certificate.s_worst << r.certificate.error_bound_m << r.certificate.force_bound_N;
   }
   return out;
 }

@@ -15,7 +15,7 @@ namespace palpate::cli {
 
 inline constexpr std::string_view kTicksHeader =
     "tick,t,fx,fy,fz,tx,ty,tz,contacts,clusters,min_distance,front,queries,time_ns,truncated,s_"
-    "worst,error_bound";
+    "worst,error_bound,force_bound";
 inline constexpr std::string_view kContactsHeader =
     "tick,pair,ax,ay,az,bx,by,bz,nx,ny,nz,distance,piece_a,lod_a,piece_b,lod_b,weight";
 

@@ -64,6 +64,7 @@ Json tick_json(const TraceRecord& r) {
       {"position_m", vector_json(r.position_m)},
       {"min_distance_m", number(r.min_distance_m)},
       {"error_bound_m", number(r.error_bound_m)},
+      {"force_bound_N", number(r.force_bound_N)},
       {"s_worst", number(r.s_worst)},
       {"energy_J", number(r.energy_J)},
       {"latency_us", 1e-3 * r.latency_ns},

@@ -32,6 +32,7 @@ TickRow row_of(const TraceRecord& r) {
   row.certificate.truncated_by_memory = (r.truncated & realtime::kByMemory) != 0;
   row.certificate.s_worst = r.s_worst;
   row.certificate.error_bound_m = r.error_bound_m;
+  row.certificate.force_bound_N = r.force_bound_N;
   return row;
 }
 

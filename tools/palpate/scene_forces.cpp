@@ -6,7 +6,7 @@
 
 #include "rt_core/force/displacement.hpp"
 #include "rt_core/force/linear_contact.hpp"
-#include "rt_core/force/penalty.hpp"
+#include "rt_core/force/wrench.hpp"
 
 namespace palpate::cli {
 

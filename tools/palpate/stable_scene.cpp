@@ -10,7 +10,7 @@
 namespace palpate::cli {
 namespace {
 
-/// Normals on both sides count apart (rt_core/force/penalty.hpp).
+/// Normals on both sides count apart (rt_core/force/wrench.hpp).
 constexpr double kSidesOfAGap = 2;
 
 std::string lowered(const std::string& key, double& value, double most, double rate_Hz,

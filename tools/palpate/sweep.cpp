@@ -49,7 +49,7 @@ SweepAxes axes_of(const SweepArguments& a, const config::Scene& scene) {
   axes.s0 = a.s0;
   axes.kappa = a.kappa.empty() ? std::vector{scene.kappa.value_or(kNoLimit)} : a.kappa;
   axes.delta_m = a.delta_m.empty() ? std::vector{scene.settings.delta_m} : a.delta_m;
-  axes.interpolate = a.interpolate.empty() ? std::vector<bool>{true} : a.interpolate;
+  axes.interpolate = a.interpolate.empty() ? std::vector<bool>{false} : a.interpolate;
   axes.force_tolerance_N = a.force_tolerance_N;
   for (const double share : kToleranceShares) {
     if (!a.force_tolerance_N.empty()) break;
@@ -182,7 +182,7 @@ void add_axes(CLI::App& command, SweepArguments& a) {
   command.add_option("--budget-us", a.budget_us, "µs, or inf; default: inf")
       ->delimiter(',')
       ->check(number_or_inf(0, 1e9));
-  command.add_option("--interpolate", a.interpolate, "true, false; default: true")->delimiter(',');
+  command.add_option("--interpolate", a.interpolate, "true, false; default: false")->delimiter(',');
   command.add_option("--bounds", a.bounds, "tight, paper")
       ->delimiter(',')
       ->check(CLI::IsMember({"tight", "paper"}))

@@ -76,7 +76,7 @@ std::string id_of(const SweepSetting& s) {
   if (!s.exact && levels) {
     id += "-s0_" + text(s.s0);
     if (std::isfinite(s.kappa)) id += "-kappa_" + text(s.kappa);
-    if (!s.interpolate) id += "-not_interpolated";
+    if (s.interpolate) id += "-interpolated";
   }
   if (!s.exact && !levels) id += "-tolerance_" + text(s.force_tolerance_N);
   if (levels && s.bounds == Bounds::paper) id += "-paper_bounds";

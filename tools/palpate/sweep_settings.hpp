@@ -20,7 +20,7 @@ struct SweepSetting {
   double kappa = kNoLimit;        ///< levels, not exact; infinity: no such rule
   double force_tolerance_N = 0;   ///< regions, not exact
   double budget_us = kNoLimit;    ///< infinity: none; exact: none
-  bool interpolate = true;        ///< levels
+  bool interpolate = false;       ///< levels
   Bounds bounds = Bounds::tight;  ///< levels
   double delta_m = 0;
 

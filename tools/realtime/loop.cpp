@@ -188,6 +188,7 @@ void Loop::record(const Tick& tick) noexcept {
   out.min_distance_m = result.min_distance_m;
   out.error_bound_m = result.certificate.error_bound_m;
   out.s_worst = result.certificate.s_worst;
+  out.force_bound_N = result.certificate.force_bound_N;
   out.energy_J = report_.energy_J;
   out.latency_ns = saturated(elapsed(tick.due_ns, tick.begin_ns));
   out.tick_ns = saturated(elapsed(tick.begin_ns, tick.end_ns));

@@ -9,7 +9,7 @@
 namespace palpate::realtime {
 
 inline constexpr std::array<char, 8> kTraceMagic{'P', 'A', 'L', 'T', 'R', 'A', 'C', 'E'};
-inline constexpr std::uint32_t kTraceVersion = 1;
+inline constexpr std::uint32_t kTraceVersion = 2;
 
 struct TraceHeader {
   std::array<char, 8> magic = kTraceMagic;
@@ -55,7 +55,8 @@ struct TraceRecord {
   std::uint8_t state = 0;      ///< LoopState
   std::uint8_t truncated = 0;  ///< bits of TraceTruncation
   std::uint16_t faults = 0;    ///< FaultSet
+  double force_bound_N = 0;    ///< the certificate's
 };
-static_assert(sizeof(TraceRecord) == 208);
+static_assert(sizeof(TraceRecord) == 216);
 
 }  // namespace palpate::realtime
