@@ -15,6 +15,8 @@ constexpr double kRoomForRounding = 1 + 1e-9;
 /// sharper than 60 degrees fade, and those sharper than 30 do not count.
 constexpr double kWholeOverlap = 2;
 constexpr double kMostOverlap = 4;
+/// What is so little beside a triangle may be on it, relative to lengths.
+constexpr double kBeside = 1e-9;
 /// Squares of lengths below this of the product of two edges: parallel by rounding.
 constexpr double kDegenerate = 1e-6;
 
@@ -60,32 +62,89 @@ Edge moved(const Side& side, const Edge& edge) noexcept {
 
 class EdgeContacts {
  public:
-  EdgeContacts(const Side& side, const Target& points, Pace& pace, const Edge& edge, double deepest,
-               double delta, FoundContacts& out) noexcept
+  EdgeContacts(const Side& side, const Target& points, Pace& pace, const Edge& edge,
+               const EdgeEnds& ends, double delta, FoundContacts& out) noexcept
       : side_(side),
         points_(points),
         pace_(pace),
         edge_(moved(side, edge)),
         delta_(delta),
         reach_(kReach * delta),
-        farthest_(reach_ > kMostOverlap * deepest ? reach_ : kMostOverlap * deepest),
-        out_(out) {}
+        ends_(ends),
+        out_(out) {
+    const bool open = is_open(side.target.surface);  // its inside begins anywhere
+    if (open || ends.from <= 0) widen(0);
+    if (open || ends.to <= 0) widen(1);
+  }
 
+  /// What is within reach first. Where something of the edge is inside it pierces the surface, and
+  /// only then a crossing may be farther: as deep as what is between the first and the last place.
   void run() noexcept {
-    const Vec3d middle = 0.5 * (edge_.from + edge_.to);
-    const double radius = (farthest_ + 0.5 * norm(edge_.to - edge_.from)) * kRoomForRounding;
-    const Surface& target = side_.target.surface;
-    for_each_near(side_.target, pace_, middle, radius, [&](std::uint32_t triangle) {
-      const image::RegionTriangle& t = target.image->region_triangles[triangle];
-      for (std::uint32_t i = 0; i < 3; ++i) {
-        // Each edge once, with the first of its triangles: it may be met with that one's box only.
-        if (t.neighbours[i] == image::kNone || t.neighbours[i] < triangle) continue;
-        see(target, 3 * triangle + i);
-      }
-    });
+    farthest_ = reach_;
+    see_near();
+    const double deepest = deepest_inside();
+    if (!(kMostOverlap * deepest > reach_)) return;
+    farthest_ = kMostOverlap * deepest;
+    see_near();
   }
 
  private:
+  void see_near() noexcept {
+    const double radius = farthest_ * kRoomForRounding;
+    const Surface& target = side_.target.surface;
+    for_each_near_segment(
+        side_.target, pace_, edge_.from, edge_.to, radius, [&](std::uint32_t triangle) {
+          const image::RegionTriangle& t = target.image->region_triangles[triangle];
+          note_piercing(target, triangle);
+          for (std::uint32_t i = 0; i < 3; ++i) {
+            // Each edge once, with the first of its triangles: it may be met with that one's box
+            // only.
+            if (t.neighbours[i] == image::kNone || t.neighbours[i] < triangle) continue;
+            see(target, 3 * triangle + i);
+          }
+        });
+  }
+
+  /// Widens the part of the edge that may be inside. Rather too far than not far enough: what is
+  /// beside a triangle by rounding, or lies in its plane, counts.
+  void note_piercing(const Surface& target, std::uint32_t triangle) noexcept {
+    const Vec3d a = corner(target, triangle, 0);
+    const Vec3d ab = corner(target, triangle, 1) - a;
+    const Vec3d ac = corner(target, triangle, 2) - a;
+    const Vec3d normal = cross(ab, ac);
+    const double from = dot(normal, edge_.from - a);
+    const double to = dot(normal, edge_.to - a);
+    const double size = norm(normal);
+    const double rounding = kBeside * size * (norm(ab) + norm(ac) + norm(edge_.to - edge_.from));
+    if ((from > rounding && to > rounding) || (from < -rounding && to < -rounding)) return;
+    if (from - to <= 2 * rounding && to - from <= 2 * rounding) {
+      widen(0);
+      widen(1);
+      return;
+    }
+    const double t = clamp01(from / (from - to));
+    const Vec3d x = edge_.from + t * (edge_.to - edge_.from) - a;
+    const double along_b = dot(cross(x, ac), normal);
+    const double along_c = dot(cross(ab, x), normal);
+    const double room = kBeside * size * size + rounding * size;
+    if (along_b < -room || along_c < -room || along_b + along_c > size * size + room) return;
+    widen(t);
+  }
+
+  void widen(double t) noexcept {
+    inside_from_ = t < inside_from_ ? t : inside_from_;
+    inside_to_ = t > inside_to_ ? t : inside_to_;
+  }
+
+  /// Signed distances change no faster than points move, and are zero where the surface is pierced.
+  double deepest_inside() const noexcept {
+    if (inside_to_ < inside_from_) return 0;
+    const double length = (inside_to_ - inside_from_) * norm(edge_.to - edge_.from);
+    const double from = inside_from_ > 0 ? 0 : ends_.from;
+    const double to = inside_to_ < 1 ? 0 : ends_.to;
+    return 0.5 * (length - from - to);
+  }
+
   void see(const Surface& target, std::uint32_t name) noexcept {
     Edge other;
     other.from = corner(target, name / 3, name % 3);
@@ -154,17 +213,20 @@ class EdgeContacts {
   Edge edge_;
   double delta_;
   double reach_;
-  double farthest_;
+  double farthest_ = 0;
+  EdgeEnds ends_;
+  double inside_from_ = 1;  // the part of the edge that may be inside; none where to < from
+  double inside_to_ = 0;
   FoundContacts& out_;
 };
 
 }  // namespace
 
 void contacts_of_edge(const Side& side, const Target& points, Pace& pace, std::uint32_t edge,
-                      double deepest, double delta, Scratch& scratch) noexcept {
+                      const EdgeEnds& ends, double delta, Scratch& scratch) noexcept {
   scratch.found.clear();
   const Edge own = edge_of(side.points, edge);
-  if (own.convex) EdgeContacts(side, points, pace, own, deepest, delta, scratch.found).run();
+  if (own.convex) EdgeContacts(side, points, pace, own, ends, delta, scratch.found).run();
 }
 
 }  // namespace palpate::contact

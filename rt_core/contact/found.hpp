@@ -87,11 +87,17 @@ struct Scratch {
 SignedDistance contacts_of_vertex(const Side& side, Pace& pace, std::uint32_t vertex,
                                   std::uint32_t hint, double delta, Scratch& scratch) noexcept;
 
+/// Bounds from below of the signed distances of an edge's ends, as lipschitz_bound() has them.
+struct EdgeEnds {
+  double from = 0;
+  double to = 0;
+};
+
 /// All contacts of a convex edge of P with convex edges of Q, in scratch.found.
-/// @param points   P as the target of queries
-/// @param deepest  no point of the edge is deeper in Q than this; >= 0
-/// Cost: one traversal, and two for each edge of Q that it crosses in overlap.
+/// @param points  P as the target of queries
+/// Cost: one traversal about the edge, and where something of it is inside another one, and two for
+/// each edge of Q that it crosses in overlap.
 void contacts_of_edge(const Side& side, const Target& points, Pace& pace, std::uint32_t edge,
-                      double deepest, double delta, Scratch& scratch) noexcept;
+                      const EdgeEnds& ends, double delta, Scratch& scratch) noexcept;
 
 }  // namespace palpate::contact

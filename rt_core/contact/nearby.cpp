@@ -3,6 +3,42 @@
 
 namespace palpate::contact {
 
+regions::Box box_of_segment(Vec3d from, Vec3d to) noexcept {
+  const Vec3d along = to - from;
+  const double length = norm(along);
+  const Vec3d x = length > 0 ? (1 / length) * along : Vec3d{1, 0, 0};
+  const double ax = x.x < 0 ? -x.x : x.x;
+  constexpr double kAside = 0.8;
+  const Vec3d aside = cross(x, ax < kAside ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0});
+  const Vec3d y = (1 / norm(aside)) * aside;
+  const Vec3d z = cross(x, y);
+  const Vec3d middle = 0.5 * (from + to);
+  const auto row = [](float(&out)[4], double a, double b, double c, double d) {
+    out[0] = static_cast<float>(a);
+    out[1] = static_cast<float>(b);
+    out[2] = static_cast<float>(c);
+    out[3] = static_cast<float>(d);
+  };
+  regions::Box box{};
+  row(box.x, x.x, y.x, z.x, middle.x);
+  row(box.y, x.y, y.y, z.y, middle.y);
+  row(box.z, x.z, y.z, z.z, middle.z);
+  box.half[0] = static_cast<float>(0.5 * length);
+  return box;
+}
+
+std::uint32_t near_boxes(const regions::Kernels& kernels, const regions::Box& box,
+                         const image::RegionNode& node, float below,
+                         float (&out_squared)[regions::kBatch]) noexcept {
+  constexpr regions::Transform kSame = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}, 1};
+  constexpr float kUnit2 = 1;
+  regions::BoxTest test;
+  const std::uint32_t near =
+      kernels.test_boxes(box, kSame, {}, node, kUnit2, below, regions::Order::any, test);
+  for (std::uint32_t i = 0; i < regions::kBatch; ++i) out_squared[i] = test.squared[i];
+  return near;
+}
+
 double signed_by(const Surface& surface, const Foot& foot, Vec3d x) noexcept {
   const double distance = sqrt_of(foot.squared);
   const bool behind = dot(x - foot.point, pseudonormal(surface, foot)) < 0;

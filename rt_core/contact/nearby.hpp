@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of a surface near a point: a traversal of the wide tree (BVH) of its image.
+// Triangles of a surface near a point or a segment: a traversal of the wide tree (BVH) of its
+// image.
 #pragma once
 
 #include <cstdint>
@@ -20,14 +21,16 @@ struct Target {
 /// Work units: a node is one, and so are this many triangles.
 inline constexpr std::uint32_t kTrianglesPerUnit = 4;
 
-/// Calls visit(triangle) for every triangle whose box is no farther from x than the radius, nearer
-/// boxes first below one node. `radius` is read again before every node, so that visit may shrink
-/// it.
-/// @param x  in the surface's coordinates; radius in its units
+/// Calls visit(triangle) for every triangle whose box is no farther than the radius, nearer boxes
+/// first below one node. `radius` is read again before every node, so that visit may shrink it.
+/// @param boxes   (node, below, squared): the node's children that are nearer than the root of
+///                `below`, as Kernels::point_boxes() has it; in image coordinates
+/// @param extent  in image coordinates: nothing asked for is farther from the origin
+/// @param radius  in the surface's units
 /// Cost: a unit for each node and for kTrianglesPerUnit triangles. No recursion.
-template <class Visit>
-[[gnu::noinline]] void for_each_near(const Target& target, Pace& pace, Vec3d x,
-                                     const double& radius, Visit visit) noexcept {
+template <class Boxes, class Visit>
+[[gnu::noinline]] void traverse(const Target& target, Pace& pace, Boxes boxes, double extent,
+                                const double& radius, Visit visit) noexcept {
   constexpr double kRounding = 2e-6;
   struct Level {
     std::uint32_t first;  // child of its node
@@ -37,9 +40,7 @@ template <class Visit>
   Level levels[image::kMaxRegionDepth];
   const ImageView& image = *target.surface.image;
   const double per_unit = 1 / target.surface.scale;
-  const Vec3d in_image = per_unit * x;
-  const Vec3f point = vec_cast<float>(in_image);
-  const double slack = kRounding * (1 + norm(in_image));
+  const double slack = kRounding * (1 + extent);
   const auto limit = [&] {
     const double reach = per_unit * radius + slack;
     return static_cast<float>(reach * reach);
@@ -51,7 +52,7 @@ template <class Visit>
     PALPATE_ASSERT(depth < image::kMaxRegionDepth);
     Level& level = levels[depth];
     level.first = at.first;
-    level.near = target.kernels->point_boxes(point, at, limit(), level.squared);
+    level.near = boxes(at, limit(), level.squared);
     pace.charge(1);
     if (at.leaf != 0) {
       std::uint32_t seen = 0;
@@ -85,6 +86,41 @@ template <class Visit>
       --depth;
     }
   }
+}
+
+/// traverse() for what is near a point.
+/// @param x  in the surface's coordinates
+template <class Visit>
+void for_each_near(const Target& target, Pace& pace, Vec3d x, const double& radius,
+                   Visit visit) noexcept {
+  const Vec3d in_image = (1 / target.surface.scale) * x;
+  const Vec3f point = vec_cast<float>(in_image);
+  const auto boxes = [&](const image::RegionNode& node, float below,
+                         float(&squared)[regions::kBatch]) {
+    return target.kernels->point_boxes(point, node, below, squared);
+  };
+  traverse(target, pace, boxes, norm(in_image), radius, visit);
+}
+
+/// A segment as a box of no width.
+regions::Box box_of_segment(Vec3d from, Vec3d to) noexcept;
+/// As Kernels::point_boxes(), of a box.
+std::uint32_t near_boxes(const regions::Kernels& kernels, const regions::Box& box,
+                         const image::RegionNode& node, float below,
+                         float (&out_squared)[regions::kBatch]) noexcept;
+
+/// traverse() for what is near a segment.
+/// @param from, to  in the surface's coordinates
+template <class Visit>
+void for_each_near_segment(const Target& target, Pace& pace, Vec3d from, Vec3d to,
+                           const double& radius, Visit visit) noexcept {
+  const double per_unit = 1 / target.surface.scale;
+  const regions::Box box = box_of_segment(per_unit * from, per_unit * to);
+  const auto boxes = [&](const image::RegionNode& node, float below,
+                         float(&squared)[regions::kBatch]) {
+    return near_boxes(*target.kernels, box, node, below, squared);
+  };
+  traverse(target, pace, boxes, per_unit * (norm(from) + norm(to)), radius, visit);
 }
 
 /// A point's signed distance from a surface: negative inside.

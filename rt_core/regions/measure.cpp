@@ -287,12 +287,17 @@ void Measuring::edge(std::uint32_t side, std::uint32_t index) noexcept {
   tick = memory_.tick;
   // With both ends measured it is known how deep the edge may be, and so how far to look.
   const std::uint32_t name = view.image().surface_edges[index];
-  vertex(side, contact::vertex_of(view.side.points, name / 3, name % 3));
-  vertex(side, contact::vertex_of(view.side.points, name / 3, (name % 3 + 1) % 3));
+  const std::uint32_t from = contact::vertex_of(view.side.points, name / 3, name % 3);
+  const std::uint32_t to = contact::vertex_of(view.side.points, name / 3, (name % 3 + 1) % 3);
+  vertex(side, from);
+  vertex(side, to);
   const double lower = edge_bound({side, index}, -view.side.target.surface.scale);
   if (lower > contact::kReach * view.delta) return;
-  contact::contacts_of_edge(view.side, view.points, *pace_, name, lower < 0 ? -lower : 0,
-                            view.delta, *memory_.scratch);
+  const std::span<const VertexBound> vertices = memory_.sides[side].vertices;
+  contact::contacts_of_edge(
+      view.side, view.points, *pace_, name,
+      {vertices[from].lower_until - view.odometer, vertices[to].lower_until - view.odometer},
+      view.delta, *memory_.scratch);
   take({side, index | ContactSource::kEdge});
 }
 
