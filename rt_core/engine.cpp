@@ -107,6 +107,13 @@ Budget part_of(const Budget& budget, std::uint64_t numerator, std::uint64_t deno
   return out;
 }
 
+/// What is left of a budget of which so many units have been used.
+Budget left_of(Budget budget, std::uint64_t used) noexcept {
+  constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
+  if (budget.units != kUnlimited) budget.units -= used < budget.units ? used : budget.units;
+  return budget;
+}
+
 /// Where a search has not proved where the push acts, contacts that are likely tell it beside those
 /// measured: all of them, or every second or third and so on where time would not do.
 /// @return how many constraints and points there are then
@@ -234,24 +241,32 @@ Found find_by_regions(Engine& engine, const Budget& budget, Meter& meter,
   meter.charge(first.used());
   meter.expect_contacts(search.contacts());
   engine.tally.lap(Stage::start, meter);
-  Pace pace(meter);
-  Distances distances = find_distances(engine, search, meter, pace);
+  // Half of what is left, so that the other half may prove the force.
+  Meter half(part_of(left_of(budget, meter.used()), 1, felt ? 2 : 1), {});
+  Pace half_pace(half);
+  Distances distances = find_distances(engine, search, half, half_pace);
+  meter.charge(half.used());
   const bool found_any = distances.minima.contacts > 0 || search.nearest_m() < s.delta_m;
-  const bool on_reserve =
-      distances.ended && !found_any && distances.lower_m() < s.delta_m && meter.has_reserve();
+  Pace pace(meter);
+  const auto undecided = [&] {
+    return distances.ended && !found_any && distances.lower_m() < s.delta_m;
+  };
+  if (undecided() && pace.go_on()) distances = find_distances(engine, search, meter, pace);
+  const bool on_reserve = undecided() && meter.has_reserve();
   if (on_reserve) {
     meter.draw_on_reserve();
     pace.resume();
     distances = find_distances(engine, search, meter, pace);
   }
-  const regions::MinimaResult& minima = distances.minima;
   if (felt) {
-    search.see_minima(pace, engine.contacts.first(minima.contacts), engine.minima.edges);
+    search.see_minima(pace, engine.contacts.first(distances.minima.contacts), engine.minima.edges);
     if (!s.exact && tolerance_m == 0) pace.limit(kCheapProof);
     search.prove_push(pace);
     if (tolerance_m == 0) search.prove_places(pace);
     pace.no_limit();
   }
+  if (distances.ended && pace.go_on()) distances = find_distances(engine, search, meter, pace);
+  const regions::MinimaResult& minima = distances.minima;
   const std::uint64_t used = meter.used();
   meter.begin_tail();
   engine.tally.lap(Stage::refine, meter.refined_ns());
