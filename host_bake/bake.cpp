@@ -17,6 +17,7 @@
 #include "host_bake/hierarchy/hierarchy.hpp"
 #include "host_bake/hierarchy/merge.hpp"
 #include "host_bake/hierarchy/prune.hpp"
+#include "host_bake/mesh/slivers.hpp"
 #include "host_bake/metrics/deviation.hpp"
 #include "host_bake/metrics/metrics.hpp"
 #include "host_bake/metrics/support_area.hpp"
@@ -215,8 +216,9 @@ std::vector<std::byte> pack_required(const Hierarchy& tree, const Metrics& metri
 
 }  // namespace
 
-std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const BakeOptions& options,
-                            const Progress& caller, BakeReport& out_report) {
+std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& of_mesh,
+                            const BakeOptions& options, const Progress& caller,
+                            BakeReport& out_report) {
   const Progress progress = of_all_stages(caller);
   const unsigned threads =
       options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
@@ -224,13 +226,20 @@ std::vector<std::byte> bake(const Mesh& mesh, const CheckReport& check, const Ba
   BakeReport report;
   report.threads = threads;
 
-  NormalMesh whole = timed(report, "normalise", [&] { return normalise(mesh); });
+  NormalMesh whole = timed(report, "normalise", [&] {
+    NormalMesh normal = normalise(mesh);
+    report.slivers_removed = remove_slivers(normal);
+    return normal;
+  });
+  // A vertex on a neighbour's edge counts as crossing.
+  const CheckReport checked =
+      report.slivers_removed > 0 ? check(Mesh{mesh.points, whole.faces}) : of_mesh;
   require_in_format(whole, options);
   report.mesh_triangles = whole.faces.size();
   const Reduced surface = timed(report, "reduce", [&] {
     return options.max_deviation_rel > 0
-               ? reduce(whole, check, options.max_deviation_rel, progress)
-               : Reduced{.mesh = std::move(whole), .check = check, .deviation = 0};
+               ? reduce(whole, checked, options.max_deviation_rel, progress)
+               : Reduced{.mesh = std::move(whole), .check = checked, .deviation = 0};
   });
   const NormalMesh& normal = surface.mesh;
   const std::vector<Patch> patches = timed(

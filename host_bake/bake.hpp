@@ -53,7 +53,8 @@ struct BakeReport {
   std::map<std::string, std::uint64_t> rejected;  ///< attempts refused, by reason
   std::size_t peak_bytes = 0;                     ///< resident set, high-water mark of the process
   unsigned threads = 0;
-  std::size_t mesh_triangles = 0;  ///< before the surface was made coarser
+  std::size_t mesh_triangles = 0;   ///< before the surface was made coarser
+  std::size_t slivers_removed = 0;  ///< mesh/slivers.hpp
 };
 
 /// Bakes a mesh that require_bakeable() let pass. The bytes depend on mesh, check and options only,

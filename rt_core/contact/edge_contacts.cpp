@@ -77,25 +77,26 @@ class EdgeContacts {
     if (open || ends.to <= 0) widen(1);
   }
 
-  /// What is within reach first. Where something of the edge is inside it pierces the surface, and
-  /// only then a crossing may be farther: as deep as what is between the first and the last place.
+  /// What is apart first. Where something of the edge is inside it pierces the surface, and only
+  /// then it may cross others in overlap: no deeper than what lies between the first and the last
+  /// place.
   void run() noexcept {
-    farthest_ = reach_;
-    see_near();
-    const double deepest = deepest_inside();
-    if (!(kMostOverlap * deepest > reach_)) return;
-    farthest_ = kMostOverlap * deepest;
-    see_near();
+    see_near(reach_);
+    const double deepest = inside_to_ < inside_from_ ? 0 : deepest_inside();
+    if (!(deepest > 0)) return;
+    overlapping_ = true;
+    see_near(kMostOverlap * deepest);
   }
 
  private:
-  void see_near() noexcept {
-    const double radius = farthest_ * kRoomForRounding;
+  void see_near(double farthest) noexcept {
+    farthest_ = farthest;
+    const double radius = farthest * kRoomForRounding;
     const Surface& target = side_.target.surface;
     for_each_near_segment(
         side_.target, pace_, edge_.from, edge_.to, radius, [&](std::uint32_t triangle) {
           const image::RegionTriangle& t = target.image->region_triangles[triangle];
-          note_piercing(target, triangle);
+          if (!overlapping_) note_piercing(target, triangle);
           for (std::uint32_t i = 0; i < 3; ++i) {
             // Each edge once, with the first of its triangles: it may be met with that one's box
             // only.
@@ -138,7 +139,6 @@ class EdgeContacts {
 
   /// Signed distances change no faster than points move, and are zero where the surface is pierced.
   double deepest_inside() const noexcept {
-    if (inside_to_ < inside_from_) return 0;
     const double length = (inside_to_ - inside_from_) * norm(edge_.to - edge_.from);
     const double from = inside_from_ > 0 ? 0 : ends_.from;
     const double to = inside_to_ < 1 ? 0 : ends_.to;
@@ -158,12 +158,13 @@ class EdgeContacts {
     if (dot(normal, other.normal + other.other_normal) < 0) normal = -normal;
     if (dot(normal, edge_.normal + edge_.other_normal) >= 0) return;
     const double distance = dot(normal, at.on_points - at.on_target);
+    if ((distance < -kTouching) != overlapping_) return;
     if (distance > reach_ || -distance > farthest_) return;
     double weight = facing(nearest_on_arc(-normal, edge_.normal, edge_.other_normal).cosine) *
                     facing(nearest_on_arc(normal, other.normal, other.other_normal).cosine) *
                     within_reach(distance, delta_) *
                     clamp01((at.sine - kParallelSine) / (kCrossingSine - kParallelSine));
-    if (weight > 0 && distance < -kTouching) weight *= overlap_weight(at, other, -distance);
+    if (weight > 0 && overlapping_) weight *= overlap_weight(at, other, -distance);
     if (weight > 0) {
       out_.add({normal, distance, weight, at.on_points, at.on_target, name / 3});
     }
@@ -214,6 +215,7 @@ class EdgeContacts {
   double delta_;
   double reach_;
   double farthest_ = 0;
+  bool overlapping_ = false;  // crossings in overlap are seen, otherwise those apart
   EdgeEnds ends_;
   double inside_from_ = 1;  // the part of the edge that may be inside; none where to < from
   double inside_to_ = 0;

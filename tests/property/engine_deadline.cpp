@@ -37,7 +37,7 @@ constexpr std::uint64_t kAtOnce = 240 + kUnitsPerReading;
 const Case kCases[] = {
     {"levels_exact", {.delta_m = kDelta_m, .exact = true}, kAtOnce, 12},
     {"levels", {.delta_m = kDelta_m, .s0 = 0.01}, kAtOnce, 12},
-    {"regions", {.engine = EngineKind::regions, .delta_m = kDelta_m}, kAtOnce, 8},
+    {"regions", {.engine = EngineKind::regions, .delta_m = kDelta_m}, kAtOnce, 12},
 };
 
 void PrintTo(const Case& c, std::ostream* os) { *os << c.name; }

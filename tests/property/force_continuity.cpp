@@ -80,7 +80,8 @@ TEST_P(GroundJaws, force_steps_hardly_farther_without_steadying_where_no_budget_
   const Steps exact = largest_steps({.exact = true}, kUnlimited, GetParam(), false);
   for (const double s0 : {0.005, 0.05}) {
     const Steps felt = largest_steps({.s0 = s0}, kUnlimited, GetParam(), false);
-    EXPECT_LE(felt.force_N, 1.6 * exact.force_N) << "s0 " << s0;
+    // Where bodies begin to overlap the surfaces take the place of simplified contacts.
+    EXPECT_LE(felt.force_N, 1.7 * exact.force_N) << "s0 " << s0;
   }
 }
 

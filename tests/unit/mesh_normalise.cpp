@@ -8,6 +8,8 @@
 #include "decompose_shapes.hpp"
 #include "host_bake/base/error.hpp"
 #include "host_bake/mesh/mesh.hpp"
+#include "host_bake/mesh/slivers.hpp"
+#include "rt_core/geometry/vec3.hpp"
 
 namespace palpate::bake {
 namespace {
@@ -100,6 +102,66 @@ TEST(Normalise_nothing_to_measure, refused) {
   EXPECT_THROW(normalise(point), InputRefused);
   EXPECT_THROW(normalise(infinite), InputRefused);
   EXPECT_THROW(normalise(huge), InputRefused);
+}
+
+/// A cube of which one edge has a vertex in its middle on one side alone: a sliver closes the gap.
+Mesh cube_with_a_sliver() {
+  Mesh mesh = test::voxels({{0, 0, 0}});
+  const Face split = mesh.faces[0];
+  const Point& a = mesh.points[split[0]];
+  const Point& b = mesh.points[split[1]];
+  const auto middle = static_cast<std::uint32_t>(mesh.points.size());
+  mesh.points.push_back({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2});
+  mesh.faces[0] = {split[0], middle, split[2]};
+  mesh.faces.push_back({middle, split[1], split[2]});
+  mesh.faces.push_back({split[0], split[1], middle});
+  return mesh;
+}
+
+double smallest_height(const NormalMesh& mesh) {
+  double least = 1;
+  for (const Face& f : mesh.faces) {
+    const auto at = [&](std::size_t i) {
+      const auto& p = mesh.points[f[i]];
+      return Vec3d{double(p[0]), double(p[1]), double(p[2])};
+    };
+    const Vec3d ab = at(1) - at(0), ac = at(2) - at(0);
+    least = std::min(least, norm(cross(ab, ac)) / std::max({norm(ab), norm(ac), norm(ac - ab)}));
+  }
+  return least;
+}
+
+TEST(Remove_slivers, gives_every_edge_two_normals) {
+  const Mesh mesh = cube_with_a_sliver();
+  EXPECT_GT(check(mesh).crossings, 0u);  // the vertex on its neighbour's edge
+  NormalMesh normal = normalise(mesh);
+  EXPECT_LT(smallest_height(normal), 1e-6);
+  EXPECT_EQ(remove_slivers(normal), 1u);
+  EXPECT_GT(smallest_height(normal), 0.1);
+  const CheckReport after = check(Mesh{mesh.points, normal.faces});
+  EXPECT_EQ(after.boundary_edges, 0u);
+  EXPECT_EQ(after.components, 1u);
+  EXPECT_EQ(after.crossings, 0u);
+  EXPECT_EQ(remove_slivers(normal), 0u);
+}
+
+TEST(Remove_slivers, makes_one_vertex_of_two_that_nearly_coincide) {
+  // A pyramid whose tip is an edge of no length.
+  const Mesh mesh{
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 1}, {0.5, 0.5 + 1e-9, 1}},
+      {{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {1, 5, 4}, {1, 2, 5}, {2, 3, 5}, {3, 4, 5}, {3, 0, 4}}};
+  NormalMesh normal = normalise(mesh);
+  EXPECT_EQ(remove_slivers(normal), 2u);
+  EXPECT_EQ(normal.faces.size(), 6u);
+  EXPECT_GT(smallest_height(normal), 0.1);
+  EXPECT_EQ(check(Mesh{mesh.points, normal.faces}).boundary_edges, 0u);
+}
+
+TEST(Remove_slivers, leaves_other_meshes_alone) {
+  const Mesh mesh = test::torus(12, 8, 0.3, 0.1, 1);
+  NormalMesh normal = normalise(mesh);
+  EXPECT_EQ(remove_slivers(normal), 0u);
+  EXPECT_EQ(normal.faces, mesh.faces);
 }
 
 }  // namespace

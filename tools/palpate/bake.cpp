@@ -90,6 +90,7 @@ std::string report_text(const Baked& baked, const ImageView& image) {
   json["welded_collapsed_triangles"] = baked.welded.collapsed_triangles;
   json["repairs"] = baked.repairs;
   json["mesh_triangles"] = baked.report.mesh_triangles;
+  json["slivers_removed"] = baked.report.slivers_removed;
   return json.dump(2) + "\n";
 }
 
