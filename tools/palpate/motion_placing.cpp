@@ -24,6 +24,7 @@ config::Scene seeing(const config::Scene& scene, double reach_m) {
   out.settings.engine = EngineKind::regions;
   out.settings.exact = true;
   out.settings.force_tolerance_N = 0;
+  out.settings.stiffness_N_per_m = 0;  // distances alone
   out.settings.delta_m = reach_m;
   return out;
 }
@@ -58,7 +59,9 @@ double MotionPlacing::distance_m(const Waymark& at, double along_m) {
     throw Failure(kOther, std::string("the engine failed (") + describe(status) + ")",
                   scene_.file.string(), "check the scene's poses");
   }
-  return std::isnan(result.min_distance_m) ? wide_.settings.delta_m : result.min_distance_m;
+  if (!std::isnan(result.min_distance_m)) return result.min_distance_m;
+  // Distances alone tell nothing of a body wholly inside the other but that it may be.
+  return result.certificate.contact == ContactStatus::ruled_out ? wide_.settings.delta_m : 0;
 }
 
 /// The gap where the waymark is; the first one is what is looked as far as from there on.
