@@ -98,7 +98,8 @@ TEST(EngineExact, contacts_are_the_same_on_images_for_the_regions_engine) {
   const BakedBody a(bumpy_ball(12, 16, 1)), lean_a(bumpy_ball(12, 16, 1), kRegions);
   const BakedBody b(bumpy_ball(14, 14, 0.8)), lean_b(bumpy_ball(14, 14, 0.8), kRegions);
   EXPECT_LT(lean_a.view.header->free_levels, a.view.header->free_levels / 2);
-  const Settings settings{.delta_m = 0.05, .exact = true, .cluster_radius_m = 0.1};
+  // Without stiffness: of the pieces alone.
+  const Settings settings{.delta_m = 0.05, .exact = true, .stiffness_N_per_m = 0};
   BakedScene all({a.view, b.view}, {{0, 1}}, settings);
   BakedScene lean({lean_a.view, lean_b.view}, {{0, 1}}, settings);
   int touching = 0;
@@ -110,7 +111,6 @@ TEST(EngineExact, contacts_are_the_same_on_images_for_the_regions_engine) {
     if (r.contacts.empty()) continue;
     ++touching;
     EXPECT_NEAR(r.min_distance_m, s.min_distance_m, 1e-9) << i;
-    EXPECT_NEAR(norm(r.wrench.force_N - s.wrench.force_N), 0, 1e-6 * norm(r.wrench.force_N)) << i;
   }
   EXPECT_GT(touching, 10);
 }

@@ -149,7 +149,7 @@ class Traces(Files):
             ("long", whole + b"1", "cut short"),
             ("head", whole[:40], "not a trace"),
             ("other", b"NOTTRACE" + whole[8:], "not a trace"),
-            ("version", whole[:8] + b"\2" + whole[9:], "another version"),
+            ("version", whole[:8] + b"\1" + whole[9:], "another version"),
         ):
             with open(self.path(name), "wb") as file:
                 file.write(text)

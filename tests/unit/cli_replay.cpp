@@ -93,7 +93,7 @@ TEST_F(Replay, Cubes_approaching_give_distance_and_force) {
   std::size_t contacts = 0;
   for (std::size_t i = 1; i < ticks.size(); ++i) {
     const auto& row = ticks[i];
-    ASSERT_EQ(row.size(), 17u);
+    ASSERT_EQ(row.size(), 18u);
     EXPECT_EQ(row[0], std::to_string(i - 1));
     const double gap_m = 0.001 - 0.0002 * double(i - 1);
     if (gap_m > kDelta_m) {

@@ -146,6 +146,17 @@ TEST(Wrench, triangles_at_one_end_of_a_peg_do_not_pull_the_force_there) {
   EXPECT_NEAR(feel(c).wrench.torque_Nm.y, 0, 0.3 * 0.05 * 0.01);
 }
 
+TEST(Wrench, contact_at_delta_brings_nothing) {
+  Random random{std::mt19937(5)};
+  const std::vector<Contact> c = random.contacts(20, 0.02);
+  const Wrench without = feel(c).wrench;
+  for (const double distance : {0.001, 0.001 - 1e-12}) {
+    std::vector<Contact> with = c;
+    with.push_back(at(random.vector(0.02), random.direction(), distance));
+    EXPECT_NEAR(norm(feel(with).wrench.force_N - without.force_N), 0, 1e-8);
+  }
+}
+
 TEST(Wrench, opposed_normals_keep_their_forces) {
   const Contact up = at({}, {0, 0, 1}, 0.0004);
   EXPECT_NEAR(norm(feel({up, at({}, {0, 0, -1}, 0.0004)}).wrench.force_N), 0, 1e-9);
