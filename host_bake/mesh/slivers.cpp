@@ -83,7 +83,8 @@ class Flipper {
     for (std::uint32_t i = 1; i < 3; ++i) {
       if (squared_length(edge(face, i)) > squared_length(edge(face, longest))) longest = i;
     }
-    const auto [u, v] = edge(face, longest);
+    const std::uint32_t u = sliver[longest];
+    const std::uint32_t v = sliver[(longest + 1) % 3];
     const std::uint32_t w = sliver[(longest + 2) % 3];
     const auto beyond = faces_.find({v, u});
     if (beyond == faces_.end() || fixed_[beyond->second] != 0) return false;
