@@ -20,7 +20,7 @@ constexpr double kSlidingGap = 0.4;  // of delta
 /// More than any scene needs; for regions, eight grid points for each contact that there can be.
 Limits limits_of(EngineKind engine, const ImageView& tool) {
   if (engine == EngineKind::levels) {
-    return {.nodes = 1u << 19, .contacts = 1u << 16, .clusters = 1u << 15};
+    return {.nodes = 1u << 19, .contacts = 1u << 18, .clusters = 1u << 15};
   }
   const auto regions = static_cast<std::uint32_t>(tool.regions.size());
   return {.nodes = 1, .clusters = std::max(1u << 14, 8 * regions)};
