@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coulomb friction with stick, beside the penalty force and apart from it: a scene without friction
+// Coulomb friction with stick, beside the contact force and apart from it: a scene without friction
 // never comes here.
 //
 // Source: the displacement form of Dahl's model, V. Hayward and B. Armstrong, A new computational

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a scene adds to the penalty force, friction and damping, over recorded poses.
+// What a scene adds to the contact force, friction and damping, over recorded poses.
 #pragma once
 
 #include <optional>
