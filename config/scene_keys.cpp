@@ -33,9 +33,8 @@ constexpr Key<Scene> kEngineKeys[] = {
      "surfaces deviating by more than this share of `delta_m` are refined, whatever `s0` says; "
      "absent: `s0` alone decides"},
     {"exact", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.exact; }},
-     "`levels`: refine everything nearer than `delta_m` to the original surface, whatever `s0` "
-     "says; "
-     "`regions`: prove the force"},
+     "prove the force; `levels`: and refine everything nearer than `delta_m` to the original "
+     "surface, whatever `s0` says"},
     {"force_tolerance_N", "N",
      Real<Scene>{[](Scene& s) -> double& { return s.settings.force_tolerance_N; }, 0, kMost},
      "`regions`: refinement ends once the certified error of the force is no more and it is known "

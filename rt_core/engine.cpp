@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "rt_core/base/meter.hpp"
+#include "rt_core/contact/facing.hpp"
 #include "rt_core/force/constraints.hpp"
 #include "rt_core/force/wrench.hpp"
 #include "rt_core/palpate_rt.hpp"
@@ -15,6 +16,7 @@ namespace {
 constexpr double kUnitQuaternion = 1e-3;
 /// Units that proving a push may take where no proof is asked for.
 constexpr std::uint64_t kCheapProof = 500;
+constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
 /// What rounding of float vertices, transforms and queries leaves of a distance, in units of the
 /// larger radius.
 constexpr double kNumericalError = 5e-7;
@@ -96,7 +98,6 @@ Certificate certify_levels(const Engine& engine, const levels::QueryResult& foun
 
 /// So much of a budget, from now on.
 Budget part_of(const Budget& budget, std::uint64_t numerator, std::uint64_t denominator) noexcept {
-  constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
   Budget out = budget;
   out.reserve_units = out.reserve_ns = 0;
   if (out.units != kUnlimited) out.units = out.units / denominator * numerator;
@@ -109,7 +110,6 @@ Budget part_of(const Budget& budget, std::uint64_t numerator, std::uint64_t deno
 
 /// What is left of a budget of which so many units have been used.
 Budget left_of(Budget budget, std::uint64_t used) noexcept {
-  constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
   if (budget.units != kUnlimited) budget.units -= used < budget.units ? used : budget.units;
   return budget;
 }
@@ -224,10 +224,19 @@ Distances find_distances(Engine& engine, regions::ContactSearch& search, Meter& 
   return out;
 }
 
+/// Proves the push to a tolerance or, where that is 0, the wrench: all of it, or what is cheap.
+void prove(regions::ContactSearch& search, Pace& pace, bool exact, double tolerance_m) noexcept {
+  const bool whole = tolerance_m == 0;
+  if (whole && !exact) pace.limit(kCheapProof);
+  search.prove_push(pace);
+  if (whole) search.prove_places(pace);
+  pace.no_limit();
+}
+
 /// The force by the least push: a guess, with three quarters of a budget at most; the distances of
-/// all regions, which also tell what edges touch; then as much proof as is asked for or cheap,
-/// which does for a few hundred triangles. Without stiffness an exact query asks for distances
-/// alone.
+/// all regions, which also tell what edges touch, with half of the rest; then as much proof as is
+/// asked for or cheap, which does for a few hundred triangles; and distances with what is left.
+/// Without stiffness an exact query asks for distances alone.
 Found find_by_regions(Engine& engine, const Budget& budget, Meter& meter,
                       force::PushWrench& push) noexcept {
   const Settings& s = engine.settings;
@@ -260,10 +269,7 @@ Found find_by_regions(Engine& engine, const Budget& budget, Meter& meter,
   }
   if (felt) {
     search.see_minima(pace, engine.contacts.first(distances.minima.contacts), engine.minima.edges);
-    if (!s.exact && tolerance_m == 0) pace.limit(kCheapProof);
-    search.prove_push(pace);
-    if (tolerance_m == 0) search.prove_places(pace);
-    pace.no_limit();
+    prove(search, pace, s.exact, tolerance_m);
   }
   if (distances.ended && pace.go_on()) distances = find_distances(engine, search, meter, pace);
   const regions::MinimaResult& minima = distances.minima;
@@ -317,10 +323,11 @@ void push_of_pieces(Engine& engine, Found& found, force::PushWrench& out) noexce
   out = force::push_wrench(constraints, push, points, tool, settings, engine.places);
   found.clusters = push.carrying_count;
   found.certificate.truncated_by_memory |= out.places_full;
-  const double unit_m = largest_unit_m(engine.states);  // nothing is deeper
+  // Nothing is deeper than the radius, and no way out longer than kMostDetour depths.
+  const double deepest_m = -contact::kMostDetour * largest_unit_m(engine.states);
   const double nearest_m = found.contacts > 0 ? found.min_distance_m : settings.delta_m;
-  const double lower_m = nearest_m > 0 ? nearest_m - found.certificate.error_bound_m : -unit_m;
-  const double strength_m = settings.delta_m - (lower_m > 0 ? lower_m : -unit_m);
+  const double lower_m = nearest_m - found.certificate.error_bound_m;
+  const double strength_m = settings.delta_m - (lower_m > 0 ? lower_m : deepest_m);
   if (strength_m > 0) {
     found.certificate.force_bound_N =
         2 * settings.stiffness_N_per_m * (norm(push.push.vector) + force::most_push(strength_m));
@@ -349,10 +356,7 @@ Found find_by_levels(Engine& engine, const Budget& budget, Meter& meter,
     Pace pace(meter);
     regions::ContactSearch search(engine.search, {s.delta_m, 0});
     search.guess(pace);
-    if (!s.exact) pace.limit(kCheapProof);
-    search.prove_push(pace);
-    search.prove_places(pace);
-    pace.no_limit();
+    prove(search, pace, s.exact, 0);
     meter.begin_tail();
     const regions::ContactSearchResult& surfaces = search.conclude();
     engine.overlapping = found.min_distance_m <= 0 || surfaces.nearest.distance_m < 0;

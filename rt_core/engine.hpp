@@ -30,7 +30,7 @@ class Engine {
   std::span<Contact> contacts;
   std::span<force::PushPoint> push_points;  // [contacts], as search.constraints
   force::Places places;
-  bool overlapping = false;           // pieces of the levels engine did, in the last tick
+  bool overlapping = false;           // bodies of the levels engine did, in the last tick
   TailTime tail;                      // of the ticks so far
   [[no_unique_address]] Tally tally;  // last: its size is a switch of the build
 };

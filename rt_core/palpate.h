@@ -56,7 +56,7 @@ enum { PALPATE_BY_DEVIATION = 0, PALPATE_BY_FORCE = 1 };
 /* Start from palpate_default_settings(): fields are only ever added. */
 typedef struct palpate_settings {
   uint32_t engine; /* fixed when the engine is made */
-  uint32_t exact;  /* 0 or 1; regions: 1 proves the wrench */
+  uint32_t exact;  /* 0 or 1: prove the wrench */
   uint32_t interpolate;
   uint32_t bounds;
   uint32_t order;
@@ -64,7 +64,7 @@ typedef struct palpate_settings {
   double s0;
   double kappa; /* infinity: no such rule */
   double force_tolerance_N;
-  double stiffness_N_per_m; /* regions: with 0, exact queries give distances alone */
+  double stiffness_N_per_m; /* with 0, exact queries give distances alone */
   double cluster_radius_m;
   double max_force_N;
   double max_torque_Nm;

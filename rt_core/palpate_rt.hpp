@@ -66,8 +66,9 @@ struct Settings {
   /// Surface deviation allowed, relative to delta: pieces with s > kappa * delta are refined,
   /// whatever s0 says; this bounds the error of force. >= 0; infinity: no such rule.
   double kappa = std::numeric_limits<double>::infinity();
-  /// Levels engine: refine every pair below delta to the original surface, whatever s0 says.
-  /// Regions engine: prove the wrench, and report the least distance of every region below delta.
+  /// Prove the wrench of the original surfaces (images without surface sections: of their pieces).
+  /// Levels engine: report every pair below delta, whatever s0 says. Regions engine: the least
+  /// distance of every region below delta.
   bool exact = false;
   Bounds bounds = Bounds::tight;
   /// Without a budget it changes nothing.
@@ -78,8 +79,7 @@ struct Settings {
   /// more; 0: until nothing that is likely to change it is left, and what is cheap to prove is
   /// proved. Whether two bodies touch is decided all the same, as far as a budget goes.
   double force_tolerance_N = 0;
-  /// Of the force in any one direction, >= 0. Regions engine: with 0, exact queries give distances
-  /// alone.
+  /// Of the force in any one direction, >= 0. With 0, exact queries give distances alone.
   double stiffness_N_per_m = 600.0;
   /// Contacts nearer together than this count as one where the force is shared out (Places); it
   /// acts on the torque alone. >= 0; 0: every contact counts.
@@ -119,8 +119,9 @@ struct Budget {
 /// Two points of the bodies that are nearer than delta, or overlap. World axes.
 ///
 /// Where they overlap, the levels engine gives points of the pieces' hulls or, where a second way
-/// out counts, points between those of the two ways: they need not lie on a surface. The regions
-/// engine gives a vertex of one body and its foot on the other, or two points of edges.
+/// out counts, points between those of the two ways: they need not lie on a surface. Of contacts of
+/// surfaces, which carry the force there, and of the regions engine they are a vertex of one body
+/// and its foot on the other, or two points of edges.
 struct Contact {
   Vec3d point_a_m{};  ///< on the surface of body a
   Vec3d point_b_m{};  ///< on the surface of body b
@@ -131,8 +132,8 @@ struct Contact {
   /// normals that the surface has there, the nearest to that.
   Vec3d normal{};
   double distance_m = 0;  ///< of the points; signed: negative where the pieces overlap
-  /// 0 to 1: how far the surfaces face each other there (docs/CONTACT.md, w). Regions engine; the
-  /// levels engine has 1.
+  /// 0 to 1: how far the surfaces face each other there (docs/CONTACT.md, w). Of
+  /// pieces (levels engine) 1.
   double share = 1;
   /// Its force on the tool is weight * stiffness * (delta - distance) along the normal.
   double weight = 0;
@@ -163,8 +164,8 @@ struct Certificate {
   double force_bound_N = 0;
   std::uint64_t units_used = 0;
   bool truncated_by_time = false;  ///< the clock ended refinement
-  /// The work units ended refinement. Regions engine: or not all is proved, of which a tick that is
-  /// neither exact nor has a tolerance takes on a few hundred units.
+  /// The work units ended refinement. Where surfaces give the force: or not all is proved, of which
+  /// a tick that is neither exact nor has a tolerance takes on a few hundred units.
   bool truncated_by_units = false;
   bool truncated_by_memory = false;  ///< nodes, contacts or clusters were used up
   bool iteration_cap_met = false;    ///< a convex query gave its best so far
@@ -215,8 +216,8 @@ Status configure(Engine& engine, const Settings& settings) noexcept;
 /// normalised)
 /// @param out    written only where the result is Status::ok
 /// Errors: bad_pose, bad_argument. Cost: the budget and its reserve, plus at most one convex query
-/// (regions engine: the closest points known of each near region, or the contacts of one vertex or
-/// edge) and a tail that is linear in the front and in contacts *
+/// (where surfaces give the force: the closest points known of each near region, or the contacts of
+/// one vertex or edge) and a tail that is linear in the front and in contacts *
 /// log(contacts), and for which time is left before the deadline. An exact query of the levels
 /// engine that has no budget is done twice in the first tick in which its nodes or contacts do not
 /// fit. No allocation, no lock, no recursion, bounded stack.

@@ -72,16 +72,15 @@ class Flipper {
     return squared_norm(image::normal_of(t)) == 0;
   }
 
-  [[nodiscard]] double squared_length(const Directed& e) const {
-    return distance2(mesh_, e.first, e.second);
-  }
-
   bool flip(std::uint32_t face) {
     const Face& sliver = mesh_.faces[face];
     if (repeats_vertex(sliver) || fixed_[face] != 0 || !is_sliver(sliver)) return false;
     std::uint32_t longest = 0;
+    const auto length2 = [&](std::uint32_t i) {
+      return distance2(mesh_, sliver[i], sliver[(i + 1) % 3]);
+    };
     for (std::uint32_t i = 1; i < 3; ++i) {
-      if (squared_length(edge(face, i)) > squared_length(edge(face, longest))) longest = i;
+      if (length2(i) > length2(longest)) longest = i;
     }
     const std::uint32_t u = sliver[longest];
     const std::uint32_t v = sliver[(longest + 1) % 3];
@@ -149,6 +148,14 @@ class Welder {
     return out;
   }
 
+  /// As many faces as neighbours are all around a vertex; on a border there is one less.
+  [[nodiscard]] bool is_on_border(std::uint32_t v, std::size_t neighbours) const {
+    const auto faces =
+        std::count_if(faces_of_[v].begin(), faces_of_[v].end(),
+                      [this](std::uint32_t f) { return !repeats_vertex(mesh_.faces[f]); });
+    return static_cast<std::size_t>(faces) != neighbours;
+  }
+
   /// The surface stays manifold where both have two neighbours in common (link condition).
   bool weld(std::uint32_t u, std::uint32_t v) {
     const std::vector<std::uint32_t> of_u = neighbours(u), of_v = neighbours(v);
@@ -159,6 +166,7 @@ class Welder {
     constexpr std::size_t kFaces = 2;
     constexpr std::size_t kTetrahedron = 3;  // neighbours of each of its vertices
     if (common.size() != kFaces) return false;
+    if (is_on_border(u, of_u.size()) || is_on_border(v, of_v.size())) return false;
     if (of_u.size() == kTetrahedron && of_v.size() == kTetrahedron) return false;
     for (const std::uint32_t f : faces_of_[v]) {
       std::replace(mesh_.faces[f].begin(), mesh_.faces[f].end(), v, u);

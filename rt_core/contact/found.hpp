@@ -87,7 +87,8 @@ struct Scratch {
 SignedDistance contacts_of_vertex(const Side& side, Pace& pace, std::uint32_t vertex,
                                   std::uint32_t hint, double delta, Scratch& scratch) noexcept;
 
-/// Bounds from below of the signed distances of an edge's ends, as lipschitz_bound() has them.
+/// Bounds from below of the signed distances of an edge's ends from Q, as lipschitz_bound() has
+/// them; in units of the pair.
 struct EdgeEnds {
   double from = 0;
   double to = 0;
@@ -95,6 +96,8 @@ struct EdgeEnds {
 
 /// All contacts of a convex edge of P with convex edges of Q, in scratch.found.
 /// @param points  P as the target of queries
+/// @param edge    its name (Edge)
+/// @param delta   contact tolerance, in units of the pair
 /// Cost: one traversal about the edge, and where something of it is inside another one, and two for
 /// each edge of Q that it crosses in overlap.
 void contacts_of_edge(const Side& side, const Target& points, Pace& pace, std::uint32_t edge,

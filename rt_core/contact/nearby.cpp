@@ -8,7 +8,7 @@ regions::Box box_of_segment(Vec3d from, Vec3d to) noexcept {
   const double length = norm(along);
   const Vec3d x = length > 0 ? (1 / length) * along : Vec3d{1, 0, 0};
   const double ax = x.x < 0 ? -x.x : x.x;
-  constexpr double kAside = 0.8;
+  constexpr double kAside = 0.8;  // where x is larger, y is less
   const Vec3d aside = cross(x, ax < kAside ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0});
   const Vec3d y = (1 / norm(aside)) * aside;
   const Vec3d z = cross(x, y);

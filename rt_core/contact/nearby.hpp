@@ -102,7 +102,7 @@ void for_each_near(const Target& target, Pace& pace, Vec3d x, const double& radi
   traverse(target, pace, boxes, norm(in_image), radius, visit);
 }
 
-/// A segment as a box of no width.
+/// A segment as a box of no width, in image coordinates.
 regions::Box box_of_segment(Vec3d from, Vec3d to) noexcept;
 /// As Kernels::point_boxes(), of a box.
 std::uint32_t near_boxes(const regions::Kernels& kernels, const regions::Box& box,

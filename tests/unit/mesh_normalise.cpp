@@ -157,6 +157,13 @@ TEST(Remove_slivers, makes_one_vertex_of_two_that_nearly_coincide) {
   EXPECT_EQ(check(Mesh{mesh.points, normal.faces}).boundary_edges, 0u);
 }
 
+TEST(Remove_slivers, does_not_join_borders) {
+  const Mesh mesh{{{0, -1, 0}, {0, 1, 0}, {0, 0, 0}, {1e-9, 0, 0}}, {{0, 3, 2}, {1, 2, 3}}};
+  NormalMesh normal = normalise(mesh);
+  EXPECT_EQ(remove_slivers(normal), 0u);
+  EXPECT_EQ(normal.faces, mesh.faces);
+}
+
 TEST(Remove_slivers, leaves_other_meshes_alone) {
   const Mesh mesh = test::torus(12, 8, 0.3, 0.1, 1);
   NormalMesh normal = normalise(mesh);
