@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-palpate_test(realtime_test
+palpate_test(realtime_test THREADS
   SOURCES
     unit/realtime_histogram.cpp unit/realtime_safety.cpp unit/realtime_loop.cpp
     unit/realtime_wall.cpp unit/realtime_trace.cpp unit/realtime_thread.cpp
@@ -15,7 +15,7 @@ if(NOT PALPATE_SANITIZE)  # which interpose on the same calls
 endif()
 
 # These run the executable.
-palpate_test(realtime_process_test SOURCES unit/realtime_process.cpp
+palpate_test(realtime_process_test THREADS SOURCES unit/realtime_process.cpp
   LIBS palpate_rt nlohmann_json::nlohmann_json)
 add_dependencies(realtime_process_test palpate)
 target_compile_definitions(realtime_process_test PRIVATE PALPATE_EXECUTABLE="$<TARGET_FILE:palpate>")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 if(PALPATE_HOST)
-  palpate_test(usb_test
+  palpate_test(usb_test THREADS
     SOURCES unit/usb_transport.cpp support/emulated_usbfs.cpp support/usbfs_calls.cpp
     LIBS palpate_usb LABEL usb)
   target_link_libraries(usb_test PRIVATE "${LIBUSB_LIBRARY}")

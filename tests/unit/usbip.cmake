@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-palpate_test(usbip_test SOURCES unit/usbip_session.cpp unit/usbip_server.cpp unit/usbip_client.cpp unit/functionfs.cpp LIBS palpate_hal LABEL usb)
+palpate_test(usbip_test THREADS SOURCES unit/usbip_session.cpp unit/usbip_server.cpp unit/usbip_client.cpp unit/functionfs.cpp LIBS palpate_hal LABEL usb)
 
 # The kernel's own client as an independent witness.
 find_program(USBIP_TOOL usbip PATHS /usr/sbin)
