@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The proximity grid against the triangles, as the engine reads it.
-#include "rt_core/contact/proximity.hpp"
+#include "rt_core/contact/nearby.hpp"
 
 #include <algorithm>
 #include <array>

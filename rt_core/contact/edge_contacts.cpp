@@ -10,7 +10,6 @@ constexpr double kParallelSine = 1e-3;
 constexpr double kCrossingSine = kParallelSine + 0.05;
 /// Overlaps that are no deeper are touching.
 constexpr double kTouching = 1e-9;
-constexpr double kRoomForRounding = 1 + 1e-9;
 /// An overlap of so many depths of its points counts wholly, and from so many on not at all: edges
 /// sharper than 60 degrees fade, and those sharper than 30 do not count.
 constexpr double kWholeOverlap = 2;
@@ -189,7 +188,6 @@ class EdgeContacts {
   /// @param faces  the cosine between a way out and what the point's own edge faces
   template <class Faces>
   double inside(const Target& target, Vec3d x, double depth, Faces faces) noexcept {
-    constexpr double kAnywhere = 1e18;
     const double value = signed_distance(target, pace_, x, image::kNone, kAnywhere).value;
     if (!(value < 0)) return 0;
     const double weight = clamp01((kMostOverlap + depth / value) / (kMostOverlap - kWholeOverlap));

@@ -11,6 +11,11 @@
 
 namespace palpate::contact {
 
+/// Farther than anything, in units.
+inline constexpr double kAnywhere = 1e18;
+/// Times this, what is computed in double is a bound from above.
+inline constexpr double kRoomForRounding = 1 + 1e-9;
+
 /// An image at the scale of a pair. The image has the region engine's sections.
 struct Surface {
   const ImageView* image = nullptr;

@@ -19,8 +19,6 @@ constexpr double kCancelling = 4;
 /// up to which the face counts wholly, and from which it does not.
 constexpr double kBesideWhole = 0.5;
 constexpr double kBesideNone = 1;
-constexpr double kRoomForRounding = 1 + 1e-9;
-constexpr double kAnywhere = 1e18;
 
 bool same(double a, double b) noexcept { return (a < b ? b - a : a - b) < kSame; }
 

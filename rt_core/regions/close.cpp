@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rt_core/regions/close.hpp"
-
-#include "rt_core/regions/course.hpp"
 #include "rt_core/regions/motion.hpp"
+#include "rt_core/regions/work.hpp"
 
 namespace palpate::regions {
 namespace {
@@ -17,6 +15,44 @@ constexpr float kLonger = 1.2f;
 /// Where what a search keeps does not do for this share of a tick, so many keep nothing.
 constexpr double kLeastLasting = 0.5;
 constexpr std::uint32_t kBareSearches = 8;
+/// Farther ahead, what comes near on the way costs more than the longer rest saves.
+constexpr double kTicksAhead = 8;
+/// Nor than so many delta: fast bodies do not go straight for long.
+constexpr double kFarthestAhead = 0.2;
+
+// Bodies that touch slide along each other farther than they move apart or together, and a step is
+// much like the one before. A proof for one place would be worth the less the farther a region
+// goes, whichever way; one for all places on its way lasts while the region keeps to it, and what
+// the region only passes by does not count (swept volumes; Redon, Kheddar and Coquillart 2002 bound
+// boxes so between two poses, to find a first contact).
+/// A course that a region is about to go.
+struct Course {
+  Vec3d way{};     ///< of its centre, in the coordinates of b, from the present place
+  float away = 0;  ///< how far that takes the region from its witness, in units
+};
+
+/// Which way a region's witness lies, from b; 0 where that is not known.
+Vec3d way_of_witness(const Work& work, const Active& item) noexcept {
+  return item.way.is_of(work.witness_of(item)) ? vec_cast<double>(item.way.along) : Vec3d{};
+}
+
+/// For the ticks to come; O(1). None where bodies are too fast, stand still, or
+/// have just jumped, or where nothing that is kept of the region would last. What brings a region
+/// nearer to its witness is left out: while that comes nearer no less than anything else, the
+/// interval between them grows no wider.
+Course course_ahead(const Work& work, const Active& item) noexcept {
+  const levels::PairState& pair = work.pair_of(item);
+  if (!(margin_of(pair) > 0) || work.keeps_nothing(item)) return {};
+  const double ticks = kTicksAhead * static_cast<double>(work.state_of(item).ahead);
+  Vec3d way = ticks * step_of(pair, item.region);
+  const double length = norm(way);
+  const double most = kFarthestAhead * pair.delta;
+  if (length > most) way = (most / length) * way;
+  const Vec3d apart = way_of_witness(work, item);
+  const double along = dot(way, apart);
+  if (along < 0) return {way - along * apart, 0};
+  return {way, static_cast<float>(along)};
+}
 
 Reach reach_of(const Work& work, const Active& item, const Course& course) noexcept {
   const PairState& pair = work.pair_of(item);

@@ -3,7 +3,7 @@
 
 #include "rt_core/base/queue.hpp"
 #include "rt_core/contact/facing.hpp"
-#include "rt_core/contact/proximity.hpp"
+#include "rt_core/contact/nearby.hpp"
 #include "rt_core/force/constraints.hpp"
 #include "rt_core/force/wrench.hpp"
 #include "rt_core/regions/measure.hpp"

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rt_core/regions/kept.hpp"
-
-#include "rt_core/regions/pair_batch.hpp"
+#include "rt_core/regions/work.hpp"
 
 namespace palpate::regions {
 namespace {
@@ -40,6 +38,45 @@ class Measured {
   Work& work_;
   std::uint32_t index_ = image::kNone;  // of the region
   std::uint32_t k_ = 0;                 // of its kept pairs
+};
+
+/// Pairs of triangles of active regions, measured sixteen at a time. Holds pairs, not places where
+/// they are kept: what is done with one that has been measured may move others. While it is not
+/// empty, nothing else may use the batch of work.memory.search.
+class PairBatch {
+ public:
+  explicit PairBatch(Work& work) noexcept : work_(work), take_(work) {}
+
+  /// @param index  of the active region that the pair is of
+  void add(std::uint32_t index, const Witness& pair) noexcept {
+    SearchScratch& scratch = *work_.memory.search;
+    const std::span<const Active> active = work_.active();
+    const bool of_others =
+        count_ > 0 && active[scratch.batch_of[0]].pair != active[index].pair;  // other bodies
+    if (count_ == kBatch || of_others) measure_all();
+    scratch.batch_of[count_] = index;
+    scratch.batch_a[count_] = pair.a;
+    scratch.batch_b[count_] = pair.b;
+    ++count_;
+  }
+
+  /// Measures what is left. kBatchUnits units, or none.
+  void measure_all() noexcept {
+    if (count_ == 0) return;
+    float distances[kBatch];
+    SearchScratch& scratch = *work_.memory.search;
+    const PairFrame& frame = work_.frame_of(work_.active()[scratch.batch_of[0]]);
+    regions::measure(*work_.memory.kernels, frame, scratch, work_.pace, count_, distances);
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      take_(scratch.batch_of[i], Witness{scratch.batch_a[i], scratch.batch_b[i], distances[i]});
+    }
+    count_ = 0;
+  }
+
+ private:
+  Work& work_;
+  Measured take_;
+  std::uint32_t count_ = 0;
 };
 
 /// Of a region's kept pairs those that may be nearer than its witness by how they and the bodies
@@ -93,8 +130,7 @@ void sift(Work& work, const Active& item, double way, Doubtful& doubtful) noexce
 }
 
 /// Where the budget ends this, the others count as not kept: the next is the nearest of them.
-void measure(Work& work, std::uint32_t index, const Doubtful& doubtful,
-             PairBatch<Measured>& batch) noexcept {
+void measure(Work& work, std::uint32_t index, const Doubtful& doubtful, PairBatch& batch) noexcept {
   Active& item = work.active()[index];
   const NearPairs& near = work.kept_of(item).near;
   for (std::uint32_t k = 0; k < doubtful.count; ++k) {
@@ -111,7 +147,7 @@ void measure(Work& work, std::uint32_t index, const Doubtful& doubtful,
 }  // namespace
 
 void measure_kept(Work& work) noexcept {
-  PairBatch batch(work, Measured(work));
+  PairBatch batch(work);
   for (std::uint32_t i = 0; i < work.count; ++i) {
     Active& item = work.active()[i];
     if (work.kept_of(item).near.count == 0) continue;

@@ -2,7 +2,7 @@
 #include "rt_core/regions/likely.hpp"
 
 #include "rt_core/contact/facing.hpp"
-#include "rt_core/contact/proximity.hpp"
+#include "rt_core/contact/nearby.hpp"
 #include "rt_core/force/wrench.hpp"
 
 namespace palpate::regions {

@@ -2,7 +2,7 @@
 #include "rt_core/regions/measure.hpp"
 
 #include "rt_core/contact/facing.hpp"
-#include "rt_core/contact/proximity.hpp"
+#include "rt_core/contact/nearby.hpp"
 #include "rt_core/regions/explained.hpp"
 
 namespace palpate::regions {
@@ -20,8 +20,6 @@ constexpr double kLikelyRadius = 0.5;
 constexpr std::uint32_t kPassedOverPerUnit = 8;
 /// A vertex is proved to be so many delta farther than it need be.
 constexpr double kProvedBeyond = 0.1;
-constexpr double kRoomForRounding = 1 + 1e-9;
-constexpr double kAnywhere = 1e18;
 
 double larger(double a, double b) noexcept { return a > b ? a : b; }
 double smaller(double a, double b) noexcept { return a < b ? a : b; }
@@ -158,7 +156,7 @@ bool Measuring::is_stale(const NearRegion& item) const noexcept {
 
 Plane Measuring::plane_at(const SideView& view, Vec3d point) noexcept {
   const contact::SignedDistance at = contact::signed_distance(
-      view.side.target, *pace_, view.side.to_target(point), image::kNone, kAnywhere);
+      view.side.target, *pace_, view.side.to_target(point), image::kNone, contact::kAnywhere);
   const Vec3d normal = contact::pseudonormal(view.side.target.surface, at.foot);
   const double length = norm(normal);
   return {at.foot.point, length > 0 ? (1 / length) * normal : Vec3d{},
@@ -206,7 +204,8 @@ std::uint32_t Measuring::lower_vertices(const NearRegion& item, const Plane& pla
     const std::uint32_t index = run.first_vertex + i;
     const Vec3d point = contact::position(view.side.points, index);
     VertexBound& at = memory_.sides[item.side].vertices[index];
-    const double by_centre = plane.distance - norm(point - sphere.centre) * kRoomForRounding;
+    const double by_centre =
+        plane.distance - norm(point - sphere.centre) * contact::kRoomForRounding;
     at.lower_until = larger(at.lower_until, by_centre + view.odometer);
     const double likely = dot(plane.normal, view.side.to_target(point) - plane.foot);
     if (likely < least && at.measured_tick != memory_.tick) {

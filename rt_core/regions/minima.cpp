@@ -2,9 +2,6 @@
 #include "rt_core/regions/minima.hpp"
 
 #include "rt_core/base/queue.hpp"
-#include "rt_core/regions/close.hpp"
-#include "rt_core/regions/gather.hpp"
-#include "rt_core/regions/report.hpp"
 #include "rt_core/regions/work.hpp"
 
 namespace palpate::regions {

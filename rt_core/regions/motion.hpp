@@ -12,7 +12,7 @@ inline double last_motion(const levels::PairState& pair) noexcept {
 }
 
 /// Pairs that are farther than the nearest by less than this, in units, are kept, and so the region
-/// needs no search until it is so far off its course (course.hpp): by four ticks of the present
+/// needs no search until it is so far off its course (close.cpp): by four ticks of the present
 /// motion, but at most by a share of delta, for what is farther costs more than the rest saves; and
 /// not at all where that is no more than three ticks.
 inline double margin_of(const levels::PairState& pair) noexcept {

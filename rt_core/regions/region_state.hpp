@@ -31,7 +31,7 @@ struct RegionState {
   float lower = 0;  ///< the least of `rest` and of the distances of the kept pairs
   Stand at;
   double active_at = 0;  ///< way_of() in the last tick in which the region was active
-  float ahead = 1;       ///< share of the ticks for which it is given a course (course.hpp)
+  float ahead = 1;       ///< share of the ticks for which it is given a course (close.cpp)
   /// So many exact searches to come keep nothing, for it would not last.
   std::uint32_t bare_searches = 0;
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rt_core/regions/report.hpp"
-
 #include "rt_core/contact/nearby.hpp"
+#include "rt_core/regions/work.hpp"
 
 namespace palpate::regions {
 namespace {

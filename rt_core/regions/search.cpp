@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "rt_core/base/assert.hpp"
-#include "rt_core/regions/named_box.hpp"
 #include "rt_core/regions/region_state.hpp"
 
 namespace palpate::regions {

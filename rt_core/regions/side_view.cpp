@@ -5,7 +5,6 @@ namespace palpate::regions {
 
 SideView view_of(const levels::PairState& pair, std::uint32_t index, const BodyPair& bodies,
                  std::uint32_t tool, bool points_of_a, const Kernels& kernels) noexcept {
-  constexpr double kRoomForRounding = 1 + 1e-9;
   const contact::Surface a{pair.image_a, pair.scale_a};
   const contact::Surface b{pair.image_b, pair.scale_b};
   SideView out;
@@ -13,7 +12,7 @@ SideView view_of(const levels::PairState& pair, std::uint32_t index, const BodyP
   out.pair = index;
   out.unit_m = pair.unit_m;
   out.delta = pair.delta;
-  out.odometer = pair.travel + pair.turn * pair.scale_a * kRoomForRounding;
+  out.odometer = pair.travel + pair.turn * pair.scale_a * contact::kRoomForRounding;
   out.pushes_tool = bodies.a == tool || bodies.b == tool;
   out.points_of_tool = (points_of_a ? bodies.a : bodies.b) == tool;
   if (points_of_a) {
@@ -32,7 +31,7 @@ SideView view_of(const levels::PairState& pair, std::uint32_t index, const BodyP
 }
 
 Sphere sphere_of(const SideView& view, std::uint32_t region) noexcept {
-  constexpr double kRoomForRounding = 1 + 1e-6;
+  constexpr double kRoomForFloat = 1 + 1e-6;
   const contact::Surface& surface = view.side.points;
   const image::Region& r = surface.image->regions[region];
   const image::RegionNode& n = surface.image->region_nodes[r.parent];
@@ -40,7 +39,7 @@ Sphere sphere_of(const SideView& view, std::uint32_t region) noexcept {
     return Vec3d{static_cast<double>(rows[0][r.slot]), static_cast<double>(rows[1][r.slot]),
                  static_cast<double>(rows[2][r.slot])};
   };
-  return {surface.scale * at(n.centre), surface.scale * norm(at(n.half)) * kRoomForRounding};
+  return {surface.scale * at(n.centre), surface.scale * norm(at(n.half)) * kRoomForFloat};
 }
 
 }  // namespace palpate::regions

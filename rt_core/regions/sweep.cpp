@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "rt_core/base/assert.hpp"
-#include "rt_core/regions/named_box.hpp"
 
 namespace palpate::regions {
 namespace {

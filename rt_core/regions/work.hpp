@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the stages of one query of minima share: gather, close, report.
+// The stages of one query of minima, and what they share.
 #pragma once
 
 #include <cstdint>
@@ -57,5 +57,34 @@ struct Work {
   MinimaResult result{.min_distance_m = std::numeric_limits<double>::infinity(),
                       .unresolved_lower_m = std::numeric_limits<double>::infinity()};
 };
+
+// The stages, in their order.
+
+/// Sets work.active() to the regions that may be nearer than delta by now, and measures their
+/// witnesses and those of their kept pairs that may be nearer. After a jump, when bounds say
+/// nothing, one pass over both trees comes first (sweep.hpp). Widths are set.
+/// Cost: O(regions); what the pass takes; a sixteenth of a batch for each pair of triangles that is
+/// measured, witnesses whatever the budget.
+void gather(Work& work) noexcept;
+
+/// Measures those of the kept pairs that may be nearer than their region's witness now, which they
+/// replace where they are. That they are not is known of most: by how far they were apart and how
+/// the bodies have moved since; and along the way from the witness's one point to the other, where
+/// triangles that share its corner or its edge are as far apart as it and no nearer.
+///
+/// Where the budget ends this, they count as not kept.
+/// Precondition: witnesses are measured. Cost: at most half of a budget; kBatchUnits for sixteen
+/// pairs that are measured, kSeparationUnits for sixteen that are looked at along a way
+void measure_kept(Work& work) noexcept;
+
+/// Searches a region until its interval is closed, or the budget ends. Cost: search().
+void close(Work& work, Active& item) noexcept;
+
+/// Appends a contact to work.memory.contacts for every active region whose witness, measured at the
+/// present poses, is nearer than delta: closest points, normal, and their distance, negative where
+/// that of a is inside b, 0 where the triangles cross.
+///
+/// Witnesses are placed in double and compared relative to the pair, sixteen at a time. O(active)
+void report(Work& work) noexcept;
 
 }  // namespace palpate::regions
