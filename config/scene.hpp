@@ -68,6 +68,7 @@ struct Scene {
   Settings settings{.max_force_N = 3.0, .max_torque_Nm = 0.1};
   Limits limits;                ///< [limits]
   std::optional<double> kappa;  ///< absent: no such rule
+  bool interpolate = false;     ///< not used any more
   double max_memory_MB =
       1000.0;  ///< [limits], 1 MB = 10^6 bytes: a scene that needs more is refused
   std::optional<double> budget_us;   ///< of one tick; absent: unlimited in replay

@@ -39,8 +39,9 @@ constexpr Key<Scene> kEngineKeys[] = {
      Real<Scene>{[](Scene& s) -> double& { return s.settings.force_tolerance_N; }, 0, kMost},
      "`regions`: refinement ends once the certified error of the force is no more and it is known "
      "which bodies touch"},
-    {"interpolate", "", Flag<Scene>{[](Scene& s) -> bool& { return s.settings.interpolate; }},
-     "blend between levels of detail (Sec. 5.5 of the paper); the least push steps no less for it"},
+    {"interpolate", "", Flag<Scene>{[](Scene& s) -> bool& { return s.interpolate; }},
+     "has no effect any more, and is read so that older scenes can be: the least push needs no "
+     "blending between levels (Sec. 5.5 of the paper)"},
     {"bounds", "",
      Choice<Scene>{kBounds,
                    [](Scene& s, std::size_t i) { s.settings.bounds = static_cast<Bounds>(i); },

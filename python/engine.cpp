@@ -38,8 +38,7 @@ struct Flag {
   const char* name;
   std::uint32_t palpate_settings::*at;
 };
-constexpr Flag kFlags[] = {{"exact", &palpate_settings::exact},
-                           {"interpolate", &palpate_settings::interpolate}};
+constexpr Flag kFlags[] = {{"exact", &palpate_settings::exact}};
 
 bool set_one(palpate_settings& to, const std::string& name, const py::handle& value) {
   for (const Number& n : kNumbers) {

@@ -93,7 +93,7 @@ Engine(images, pairs=None, tool=0, limits={}, **settings)
             against every other body
   tool      index of the body that the wrench acts on
   limits    {"nodes": n, "contacts": n, "clusters": n}, room for each
-  settings  engine="levels" or "regions", delta_m, s0, kappa, exact, interpolate, bounds="tight" or
+  settings  engine="levels" or "regions", delta_m, s0, kappa, exact, bounds="tight" or
             "paper", order="force" or "deviation", force_tolerance_N, stiffness_N_per_m,
             cluster_radius_m, max_force_N, max_torque_Nm: as [engine] and [force] of a scene, but
             the wrench is limited only where it is said

@@ -11,14 +11,13 @@ namespace palpate {
 
 /// Parts of a tick, in their order.
 enum class Stage : std::uint8_t {
-  start,        ///< last tick's front; the regions engine's guess of what carries
-  refine,       ///< queries and splits; the regions engine's distances and proof
-  interpolate,  ///< between levels (levels engine)
-  upkeep,       ///< raising the front, tightening the certificate (levels engine)
-  settle,       ///< contacts and bounds of what is not resolved (levels engine)
-  force,        ///< contacts into a wrench
+  start,   ///< last tick's front; the regions engine's guess of what carries
+  refine,  ///< queries and splits; the regions engine's distances and proof
+  upkeep,  ///< raising the front, tightening the certificate (levels engine)
+  settle,  ///< contacts and bounds of what is not resolved (levels engine)
+  force,   ///< contacts into a wrench
 };
-inline constexpr std::uint32_t kStages = 6;
+inline constexpr std::uint32_t kStages = 5;
 
 /// Sums and maxima over ticks.
 struct Counters {

@@ -36,7 +36,6 @@ bool normalise(const Pose& in, Pose& out) noexcept {
 
 levels::Rules rules_of(const Settings& settings) noexcept {
   return {.exact = settings.exact,
-          .interpolate = settings.interpolate,
           .bounds = settings.bounds,
           .order = settings.order,
           .s0 = settings.s0,

@@ -63,13 +63,12 @@ Limits limits_of(const palpate_limits& from) noexcept {
 
 /// False where an enumeration is out of range.
 bool settings_of(const palpate_settings& from, Settings& out) noexcept {
-  if (from.engine > PALPATE_REGIONS || from.exact > 1 || from.interpolate > 1 ||
-      from.bounds > PALPATE_BOUNDS_PAPER || from.order > PALPATE_BY_FORCE) {
+  if (from.engine > PALPATE_REGIONS || from.exact > 1 || from.bounds > PALPATE_BOUNDS_PAPER ||
+      from.order > PALPATE_BY_FORCE) {
     return false;
   }
   out.engine = static_cast<EngineKind>(from.engine);
   out.exact = from.exact != 0;
-  out.interpolate = from.interpolate != 0;
   out.bounds = static_cast<Bounds>(from.bounds);
   out.order = static_cast<Order>(from.order);
   out.delta_m = from.delta_m;
@@ -193,7 +192,7 @@ void palpate_default_settings(palpate_settings* out) {
   const palpate::Settings s;
   *out = {static_cast<std::uint32_t>(s.engine),
           s.exact ? 1u : 0u,
-          s.interpolate ? 1u : 0u,
+          0u,
           static_cast<std::uint32_t>(s.bounds),
           static_cast<std::uint32_t>(s.order),
           s.delta_m,

@@ -73,7 +73,6 @@ struct Settings {
   Bounds bounds = Bounds::tight;
   /// Without a budget it changes nothing.
   Order order = Order::force;
-  bool interpolate = false;  ///< LOD interpolation, Sec. 5.5 (acts where simplified levels exist)
 
   /// Regions engine: a tick that is not exact goes on until the certified error of the force is no
   /// more; 0: until nothing that is likely to change it is left, and what is cheap to prove is

@@ -49,7 +49,7 @@ struct Layout {
   std::span<force::Place> places;
   // Levels engine.
   std::span<levels::Node> nodes;
-  std::span<std::uint32_t> front, blending, stopped;
+  std::span<std::uint32_t> front, stopped;
   std::span<levels::Waiting> waiting;
   std::span<convex::PenetrationScratch> scratch;
   std::span<convex::PressureScratch> pressure;
@@ -132,7 +132,6 @@ std::size_t contacts_for(const Scene& scene, const Limits& limits) noexcept {
 void lay_out_levels(Arena& arena, const Limits& limits, Layout& out) noexcept {
   out.nodes = arena.array<levels::Node>(limits.nodes);
   out.front = arena.array<std::uint32_t>(limits.nodes);
-  out.blending = arena.array<std::uint32_t>(limits.nodes);
   out.waiting = arena.array<levels::Waiting>(limits.nodes);
   out.stopped = arena.array<std::uint32_t>(limits.nodes);
   out.scratch = arena.array<convex::PenetrationScratch>(1);
@@ -244,7 +243,7 @@ Engine& attach(const Layout& layout, const Scene& scene) noexcept {
   e.places.attach(layout.places);
   e.levels.pairs = e.minima.pairs = layout.states;
   e.levels.contacts = e.minima.contacts = layout.contacts;
-  e.levels.tree.attach(layout.nodes, layout.front, layout.blending);
+  e.levels.tree.attach(layout.nodes, layout.front);
   e.levels.waiting = layout.waiting;
   e.levels.stopped = layout.stopped;
   e.levels.scratch = layout.scratch.data();

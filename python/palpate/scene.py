@@ -11,7 +11,7 @@ import numpy as np
 from palpate._engine import Engine, Error, Image
 
 # What a scene says of the engine. The rest of it is for the real-time loop.
-_ENGINE = ("engine", "delta_m", "s0", "kappa", "exact", "force_tolerance_N", "interpolate", "bounds", "order")
+_ENGINE = ("engine", "delta_m", "s0", "kappa", "exact", "force_tolerance_N", "bounds", "order")
 _FORCE = ("stiffness_N_per_m", "cluster_radius_m", "max_force_N", "max_torque_Nm")
 _LIMITS = ("nodes", "contacts", "clusters")
 

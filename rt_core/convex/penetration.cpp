@@ -9,8 +9,6 @@
 namespace palpate::convex {
 namespace {
 
-/// Another way out counts up to so many times the depth.
-constexpr double kOtherUpTo = 1.5;
 /// Of the extent of a - b.
 constexpr double kCoplanar = 1e-13;
 /// Cosine between normals of faces that lie in one plane.
@@ -166,39 +164,6 @@ void keep_deepest(const HullPair& pair, const Polytope& polytope, Best& best) no
   }
 }
 
-/// The face of a - b apart from the best one that the origin is nearest to, while it is of
-/// interest; its extent is the way through it. Whatever lies before that face is lower than it is
-/// far, so that a search that goes on until nothing is lower has met it, wherever it began.
-/// Directions between faces may be shorter ways out, but which of them a search comes by is chance.
-Best expand_apart(const HullPair& pair, Polytope& polytope, const Best& best) noexcept {
-  constexpr double kApart = 0.5;  // cosines
-  constexpr double kLook = 0.8;
-  double nearest = kOtherUpTo * best.extent;
-  Best other;
-  for (std::uint32_t i = 0; i < kMostOther; ++i) {
-    const std::uint32_t lowest = lowest_face_apart(polytope, best.outward, kLook);
-    if (lowest == kMaxPolytopeFaces) break;
-    PolytopeFace& face = polytope.faces[lowest];
-    if (face.offset >= nearest) break;
-    const DifferencePoint w = support(pair, face.normal, polytope.vertices[face.vertices[0]]);
-    if (dot(face.normal, w.point) - face.offset > kDistanceGap * extent(pair)) {
-      if (!add_vertex(polytope, lowest, w, kCoplanar * extent(pair))) break;
-      continue;
-    }
-    face.passed_over = true;
-    if (dot(face.normal, best.outward) > kApart) continue;
-    const DifferencePoint corners[3] = {polytope.vertices[face.vertices[0]],
-                                        polytope.vertices[face.vertices[1]],
-                                        polytope.vertices[face.vertices[2]]};
-    const double way = sqrt_of(squared_way(corners[0], corners[1], corners[2]));
-    if (way >= nearest) continue;
-    nearest = way;
-    keep(other, way, face.normal, corners);
-  }
-  if (other.extent <= nearest) keep_deepest(pair, polytope, other);
-  return other;
-}
-
 /// Of the simplex that distance() ended with: it lies in the plane where a - b does.
 void keep_deepest(const HullPair& pair, const Cache& cache, Best& best) noexcept {
   if (cache.count == 0) return;
@@ -238,17 +203,15 @@ Vec3d witness_a(const HullPair& pair, const Best& best) noexcept {
 }  // namespace
 
 Penetration penetration(const Hull& a, const Hull& b, const RelativePose& b_in_a,
-                        const Cache& cache, PenetrationScratch& scratch, Ways ways) noexcept {
+                        const Cache& cache, PenetrationScratch& scratch) noexcept {
   const HullPair pair{a, b, b_in_a};
   const Span s = corners_to_start(pair, cache);
   Best best;
-  Best other;
   double lower = 0;
   if (s.count == 4 && start(scratch.polytope, s.corners)) {
     bool settled = false;
     lower = expand(pair, scratch.polytope, best, settled) - rounding(pair);
     if (settled) keep_deepest(pair, scratch.polytope, best);
-    if (settled && ways == Ways::two) other = expand_apart(pair, scratch.polytope, best);
   } else {
     measure_flat(pair, s, best);
     keep_deepest(pair, cache, best);
@@ -259,12 +222,6 @@ Penetration penetration(const Hull& a, const Hull& b, const RelativePose& b_in_a
   out.normal = -best.outward;
   out.point_a = witness_a(pair, best);
   out.point_b = out.point_a + out.depth * out.normal;
-  if (other.extent < kOtherUpTo * out.depth) {
-    out.other_normal = -other.outward;
-    const double longer = (other.extent - out.depth) / ((kOtherUpTo - 1) * out.depth);
-    out.other_share = longer > 0 ? 0.5 * (1 - longer) : 0.5;  // in tiny overlaps rounding counts
-    out.other_point_a = witness_a(pair, other);
-  }
   out.exact = out.depth - out.lower_bound <= kDistanceAccept * extent(pair);
   return out;
 }

@@ -7,14 +7,6 @@
 
 namespace palpate::convex {
 
-inline constexpr std::uint32_t kMostOther = 64;  ///< support pairs spent on the other way out
-
-/// What is asked for.
-enum class Ways : std::uint8_t {
-  shortest,
-  two,  ///< the next best way out too
-};
-
 /// In the coordinates of a.
 struct Penetration {
   double depth = 0;        ///< >= 0; moving a by depth * normal separates the hulls
@@ -23,14 +15,6 @@ struct Penetration {
   Vec3d point_a{};         ///< deepest point of a inside b
   Vec3d point_b{};         ///< point_b - point_a = depth * normal
   bool exact = true;       ///< false: a cap was met; depth and normal still separate the hulls
-  /// The next best way out, normal to the nearest face of a - b that is 60 degrees or more away
-  /// from the first, and how much it counts: 0.5 where that face is as near as the first, 0 where
-  /// it is farther by half of the depth, there is none, none was seen before a cap, or it was not
-  /// asked for (Ways). In one overlap of a thousand a search that starts elsewhere finds another
-  /// face.
-  Vec3d other_normal{};
-  double other_share = 0;  ///< 0 to 0.5
-  Vec3d other_point_a{};   ///< as point_a, that way; the origin where other_share is 0
 };
 
 /// Working memory of one query at a time, about 26 KB; needs no initialisation.
@@ -53,11 +37,10 @@ struct PenetrationScratch {
 /// translation seen, exact = false. Where a - b is flat to kTouching (coplanar flat hulls) the
 /// depth is at most that and the normal theirs; where it is straight, the normal is one across it.
 /// The depth is continuous as the hulls move. The normal and the points leap where another way out
-/// becomes the shortest; mixed by other_share the two directions do not, nor do the points of a.
-/// Cost: at most kMaxPolytopeVertices + 12 support pairs, O(kMaxPolytopeFaces) each, and as many as
-/// kMostOther more for the other way. Real-time safe.
+/// becomes the shortest.
+/// Cost: at most kMaxPolytopeVertices + 12 support pairs, O(kMaxPolytopeFaces) each. Real-time
+/// safe.
 [[nodiscard]] Penetration penetration(const Hull& a, const Hull& b, const RelativePose& b_in_a,
-                                      const Cache& cache, PenetrationScratch& scratch,
-                                      Ways ways = Ways::shortest) noexcept;
+                                      const Cache& cache, PenetrationScratch& scratch) noexcept;
 
 }  // namespace palpate::convex

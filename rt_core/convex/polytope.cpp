@@ -103,7 +103,7 @@ bool close_fan(Polytope& p) noexcept {
     const std::uint32_t slot = take_face(p);
     if (slot == kMaxPolytopeFaces) return false;
     PolytopeFace& face = p.faces[slot];
-    face = {{}, 0, {h.from, h.to, apex}, {h.outer, 0, narrow(previous)}, true, false, false};
+    face = {{}, 0, {h.from, h.to, apex}, {h.outer, 0, narrow(previous)}, true, false};
     if (!set_plane(p, face)) {
       face.normal = p.faces[h.outer].normal;
       face.offset = p.faces[h.outer].offset;
@@ -143,7 +143,7 @@ bool start(Polytope& p, const DifferencePoint (&corners)[4]) noexcept {
   constexpr std::uint16_t kAcross[4][3] = {{2, 3, 1}, {0, 3, 2}, {1, 3, 0}, {2, 1, 0}};
   for (std::uint32_t f = 0; f < 4; ++f) {
     PolytopeFace& face = p.faces[f];
-    face = {{}, 0, {}, {}, true, false, false};
+    face = {{}, 0, {}, {}, true, false};
     for (std::uint32_t k = 0; k < 3; ++k) {
       face.vertices[k] = kCorners[f][k];
       face.across[k] = kAcross[f][k];
@@ -154,18 +154,12 @@ bool start(Polytope& p, const DifferencePoint (&corners)[4]) noexcept {
 }
 
 std::uint32_t lowest_face(const Polytope& p) noexcept {
-  const std::uint32_t best = lowest_face_apart(p, {}, 0);
-  PALPATE_ASSERT(best < kMaxPolytopeFaces);
-  return best;
-}
-
-std::uint32_t lowest_face_apart(const Polytope& p, Vec3d direction, double cosine) noexcept {
   std::uint32_t best = kMaxPolytopeFaces;
   for (std::uint32_t f = 0; f < p.face_count; ++f) {
-    if (!p.faces[f].live || p.faces[f].passed_over || dot(p.faces[f].normal, direction) > cosine)
-      continue;
+    if (!p.faces[f].live) continue;
     if (best == kMaxPolytopeFaces || p.faces[f].offset < p.faces[best].offset) best = f;
   }
+  PALPATE_ASSERT(best < kMaxPolytopeFaces);
   return best;
 }
 

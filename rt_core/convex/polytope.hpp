@@ -17,8 +17,7 @@ struct PolytopeFace {
   std::uint16_t vertices[3] = {};  ///< counter-clockwise seen from outside
   std::uint16_t across[3] = {};    ///< face across the edge from vertices[i] to vertices[i + 1]
   bool live = false;
-  bool visible = false;      ///< from the vertex being added
-  bool passed_over = false;  ///< by a search for others
+  bool visible = false;  ///< from the vertex being added
 };
 
 /// An edge between a face that is visible from the new vertex and one that is not.
@@ -48,11 +47,6 @@ struct Polytope {
 /// The live face with the least offset: the nearest one to the origin where that is inside, else
 /// the one it is farthest beyond. O(faces).
 [[nodiscard]] std::uint32_t lowest_face(const Polytope& polytope) noexcept;
-
-/// The same of the faces that are not passed over and whose normals have a cosine of at most
-/// `cosine` with a unit direction; kMaxPolytopeFaces where there is none.
-[[nodiscard]] std::uint32_t lowest_face_apart(const Polytope& polytope, Vec3d direction,
-                                              double cosine) noexcept;
 
 /// Adds a vertex outside of `face` and closes the polytope around it.
 ///

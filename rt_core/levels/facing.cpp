@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/facing.hpp"
 
-#include "rt_core/geometry/smooth_step.hpp"
+#include "rt_core/geometry/angle.hpp"
 #include "rt_core/levels/rules.hpp"
 
 namespace palpate::levels {
@@ -14,10 +14,6 @@ using image::Triangle;
 /// A point this near to a triangle of a patch lies on it. Baked vertices are rounded to 6e-8 and
 /// hulls are checked against the mesh to 1e-7.
 constexpr double kOnSurface = 1e-6;
-/// Of delta: patches that overlap by less have only just met.
-constexpr double kJustMet = 0.25;
-/// Squareness from which on they may have.
-constexpr double kSideways = 0.25;
 
 double squared_distance_to_segment(Vec3d p, Vec3d from, Vec3d to) noexcept {
   const Vec3d along = to - from;
@@ -42,13 +38,16 @@ bool on_triangle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) noexcept {
          squared_distance_to_segment(p, c, a) <= kNear2;
 }
 
-/// How squarely a patch may be met along a direction that leads out of it: 1 and more within its
-/// cone of normals, less by as much as the cosine falls beyond. `normal` is the piece's, in the
-/// coordinates of `outward`.
-double normal_alignment(const Piece& piece, Vec3d normal, Vec3d outward) noexcept {
+/// Cosine of the angle between a direction that leads out of a patch and its cone of normals: 1 in
+/// the cone. `normal` is the piece's, in the coordinates of `outward`.
+double cosine_to_cone(const Piece& piece, Vec3d normal, Vec3d outward) noexcept {
   const double length = norm(normal);
+  const double cone = static_cast<double>(piece.patch_cosine);
   if (!(length > 0)) return 1;
-  return 1 + dot(outward, normal) / length - static_cast<double>(piece.patch_cosine);
+  const double cosine = dot(outward, normal) / length;
+  if (cosine >= cone) return 1;
+  const double sines2 = (1 - cosine * cosine) * (1 - cone * cone);
+  return cosine * cone + (sines2 > 0 ? sqrt_of(sines2) : 0);
 }
 
 }  // namespace
@@ -68,24 +67,10 @@ bool on_patch(const ImageView& image, const Piece& piece, Vec3d point) noexcept 
   return false;
 }
 
-double normal_alignment(const PairState& pair, const Piece& a, const Piece& b,
-                        Vec3d direction) noexcept {
-  const double of_a = normal_alignment(a, patch_normal(a), -direction);
-  const double of_b = normal_alignment(b, pair.b_in_a.rotation * patch_normal(b), direction);
-  return of_a < of_b ? of_a : of_b;
-}
-
-double just_met(const PairState& pair, const Piece& a, const Piece& b, const Way& way) noexcept {
-  const double deep = way.depth / (kJustMet * pair.delta);
-  if (!(deep < 1)) return 0;
-  const double square = normal_alignment(pair, a, b, way.normal);
-  if (!(square > 0)) return 0;
-  const Vec3d point_b = way.point_a + way.depth * way.normal;
-  if (!on_patch(*pair.image_a, a, (1.0 / pair.scale_a) * way.point_a) ||
-      !on_patch(*pair.image_b, b, (1.0 / pair.scale_b) * to_b(pair, point_b))) {
-    return 0;
-  }
-  return (1 - smooth_step(deep)) * smooth_step(square / kSideways);
+double facing(const PairState& pair, const Piece& a, const Piece& b, Vec3d direction) noexcept {
+  const double of_a = cosine_to_cone(a, vec3d(a.patch_normal), -direction);
+  const double of_b = cosine_to_cone(b, pair.b_in_a.rotation * vec3d(b.patch_normal), direction);
+  return clamp01(of_a < of_b ? of_a : of_b);
 }
 
 }  // namespace palpate::levels

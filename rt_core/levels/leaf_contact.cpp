@@ -3,7 +3,6 @@
 
 #include <limits>
 
-#include "rt_core/geometry/smooth_step.hpp"
 #include "rt_core/levels/facing.hpp"
 #include "rt_core/levels/rules.hpp"
 
@@ -13,12 +12,6 @@ namespace {
 using image::Piece;
 using image::PieceFlag;
 using image::Triangle;
-
-/// Sums of directions that are shorter point nowhere.
-constexpr double kLeastDirection = 1e-3;
-/// Original pieces are felt whole up to a right angle beyond their normals, and not at all where
-/// the cosine is less by one over this and more.
-constexpr double kBehind = 2;
 
 /// Is every one of the hull vertices a corner of the triangle?
 bool holds(const Triangle& t, const std::uint32_t (&vertices)[3], std::uint32_t count) noexcept {
@@ -158,57 +151,18 @@ LeafContact nearest_parts(const PairState& pair, const Piece& a, const Piece& b,
   return best;
 }
 
-/// The hulls are parted soonest through the back of the thinner one where they overlap by more than
-/// half of it, and sideways where they hardly meet: no way out of the solid. The less the patches
-/// look like it, the more they are parted the way they face. Where patches have only just met they
-/// go on being parted the way they met.
-Vec3d direction_of(const PairState& pair, const Piece& a, const Piece& b, const Way& way) noexcept {
-  const Vec3d shortest = way.normal;
-  const double square = smooth_step(normal_alignment(pair, a, b, shortest));
-  const double as_met = square < 1 ? just_met(pair, a, b, way) : 0;
-  const double share = square > as_met ? square : as_met;
-  const Vec3d facing = pair.b_in_a.rotation * patch_normal(b) - patch_normal(a);
-  const Vec3d mixed = share * shortest + (1 - share) * facing;
-  const double length = norm(mixed);
-  return length > kLeastDirection ? (1 / length) * mixed : shortest;
-}
-
-/// The way out of the solid, continuous where one of the hulls' takes the place of another.
-Vec3d way_out(const PairState& pair, const Piece& a, const Piece& b,
-              const convex::Penetration& p) noexcept {
-  const Vec3d shortest = direction_of(pair, a, b, {p.normal, p.point_a, p.depth});
-  if (!(p.other_share > 0)) return shortest;
-  const Vec3d mixed =
-      (1 - p.other_share) * shortest +
-      p.other_share * direction_of(pair, a, b, {p.other_normal, p.other_point_a, p.depth});
-  const double length = norm(mixed);
-  return length > kLeastDirection ? (1 / length) * mixed : shortest;
-}
-
-/// Pieces that have passed through each other are nearest back to back: the less they face each
-/// other, the less is felt of them. Simplified ones may have where the originals need not. Original
-/// ones have entered a solid, of which patches far thinner than the overlap is deep show the inner
-/// side; from outside, vertices and edges are met at up to a right angle beyond the normals.
-void fade_behind(const PairState& pair, const Piece& a, const Piece& b, double reach,
-                 LeafContact& contact) noexcept {
-  if (!(contact.distance < reach)) return;
-  const bool simplified = is_simplified(a) || is_simplified(b);
-  const double square = normal_alignment(pair, a, b, contact.normal);
-  contact.share = smooth_step(simplified ? square : 1 + kBehind * square);
-  if (contact.share < 1) contact.distance = faded(contact.distance, contact.share, reach);
-}
-
 LeafContact overlapping(const PairState& pair, const Piece& a, const Piece& b,
                         const convex::Cache& cache, convex::PenetrationScratch& scratch) noexcept {
-  const convex::Penetration p = convex::penetration(hull_of(*pair.image_a, a, pair.scale_a),
-                                                    hull_of(*pair.image_b, b, pair.scale_b),
-                                                    pair.b_in_a, cache, scratch, convex::Ways::two);
+  const convex::Penetration p =
+      convex::penetration(hull_of(*pair.image_a, a, pair.scale_a),
+                          hull_of(*pair.image_b, b, pair.scale_b), pair.b_in_a, cache, scratch);
   LeafContact contact;
   contact.found = true;
   contact.distance = contact.lower_bound = contact.upper_bound = -p.depth;
-  contact.normal = way_out(pair, a, b, p);
-  contact.point_a = (1 - p.other_share) * p.point_a + p.other_share * p.other_point_a;
-  contact.point_b = contact.point_a + p.depth * contact.normal;
+  contact.share = facing(pair, a, b, p.normal);
+  contact.normal = p.normal;
+  contact.point_a = p.point_a;
+  contact.point_b = p.point_b;
   contact.capped = !p.exact;
   return contact;
 }
@@ -235,7 +189,7 @@ LeafContact leaf_contact(const PairState& pair, const Piece& a, const Piece& b,
   if (overlap) return overlapping(pair, a, b, cache, scratch);
   if (virtual_a || virtual_b) return {.hidden_a = virtual_a, .hidden_b = virtual_b};
   LeafContact contact = from_distance(query);
-  fade_behind(pair, a, b, reach, contact);
+  contact.share = facing(pair, a, b, contact.normal);
   return contact;
 }
 

@@ -16,7 +16,7 @@ struct LeafContact {
   double distance = 0;     ///< signed; the witnesses are this far apart
   double lower_bound = 0;  ///< of the true signed distance of the two patches
   double upper_bound = 0;  ///< likewise
-  double share = 1;        ///< of its depth within the reach that is felt; distance has it counted
+  double share = 1;        ///< Contact::share
   Vec3d point_a{};
   Vec3d point_b{};
   Vec3d normal{};             ///< unit, from b to a
@@ -36,12 +36,10 @@ struct LeafContact {
 /// piece may be of a level at which its surface ends elsewhere, so they are not where refinement
 /// may stop (hidden_a, hidden_b). Pieces of open or self-crossing components have no inside; there
 /// the triangles of the patch are queried one by one instead of the hull. Overlapping hulls:
-/// penetration depth (Appendix B, step 2b), and its direction where the patches face that way
-/// (Piece::patch_normal) or have only just met (facing.hpp), so that it does not leap at zero;
-/// else, more and more, the way they face. Departure from the paper, whose pieces are pushed out
-/// the shortest way: of a thin piece that is often through its back. Where another way out is
-/// nearly as short, directions and points of the two are mixed (Penetration::other_share). Nor is a
-/// contact felt of pieces that meet back to back: they have passed through each other.
+/// penetration depth (Appendix B, step 2b). Departure from the paper: a contact counts as much as
+/// both patches face along its normal (facing.hpp), as contacts of surfaces do (docs/CONTACT.md):
+/// the shortest way out of a thin piece is often through its back, and pieces that have passed
+/// through each other are nearest back to back.
 /// @param query         the result for the hulls of a and b
 /// @param reach         only contacts nearer than this are wanted
 /// @param most_queries  to spend on triangles; beyond that the contact may not be the nearest
@@ -51,10 +49,5 @@ struct LeafContact {
 LeafContact leaf_contact(const PairState& pair, const image::Piece& a, const image::Piece& b,
                          const convex::Distance& query, const convex::Cache& cache, double reach,
                          std::uint32_t most_queries, convex::PenetrationScratch& scratch) noexcept;
-
-/// So long is a contact of which only a share is felt: a share of 0 reaches as far as `reach`.
-constexpr double faded(double distance, double share, double reach) noexcept {
-  return distance < reach ? reach - share * (reach - distance) : distance;
-}
 
 }  // namespace palpate::levels

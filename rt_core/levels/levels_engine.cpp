@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/levels_engine.hpp"
 
-#include "rt_core/levels/interpolate.hpp"
 #include "rt_core/levels/refine.hpp"
 #include "rt_core/levels/start.hpp"
 #include "rt_core/levels/upkeep.hpp"
@@ -50,8 +49,6 @@ void run(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally, Sc
   refine_within_budget(work);
   tally.lap(Stage::refine, meter);
   if (!work.result.truncated_by_time && !work.result.truncated_by_units) {
-    if (rules.interpolate && !rules.exact) interpolate(work);
-    tally.lap(Stage::interpolate, meter);
     raise(work);
     tighten(work);
     tally.lap(Stage::upkeep, meter);

@@ -53,15 +53,15 @@ struct QueryResult {
 /// Q(A, B, delta) for all pairs, whose poses and deltas are set.
 ///
 /// Stage by stage: start (start.hpp) from last tick's front, the near nodes of it on a queue;
-/// refine (refine.hpp) while the budget lasts; with time left, interpolate contacts between levels
-/// (interpolate.hpp) and keep up the tree and the certificate (upkeep.hpp). What still waits when
-/// the budget ends keeps its lower bound, and the last contact that it or an ancestor gave,
-/// re-measured at its material points: the cut is complete at every moment, and a truncated answer
-/// loses detail only. An exact query that no budget can end is worked off in the cheapest order
-/// (Schedule::exhaustive); where its nodes or contacts turn out not to fit, it begins again from
-/// the roots, by worth, so that what is nearest gets the memory, and later ticks go on from there
-/// until one fits. Departure: nearest first within what has to be measured anyway, so that forces
-/// are renewed before detail is added. Cost: the budget, plus one leaf contact, plus O(front).
+/// refine (refine.hpp) while the budget lasts; with time left, keep up the tree and the certificate
+/// (upkeep.hpp). What still waits when the budget ends keeps its lower bound, and the last contact
+/// that it or an ancestor gave, re-measured at its material points: the cut is complete at every
+/// moment, and a truncated answer loses detail only. An exact query that no budget can end is
+/// worked off in the cheapest order (Schedule::exhaustive); where its nodes or contacts turn out
+/// not to fit, it begins again from the roots, by worth, so that what is nearest gets the memory,
+/// and later ticks go on from there until one fits. Departure: nearest first within what has to be
+/// measured anyway, so that forces are renewed before detail is added. Cost: the budget, plus one
+/// leaf contact, plus O(front).
 QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally) noexcept;
 
 }  // namespace palpate::levels

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/refine.hpp"
 
-#include "rt_core/levels/interpolate.hpp"
 #include "rt_core/levels/leaf_contact.hpp"
 #include "rt_core/levels/start.hpp"
 
@@ -49,7 +48,6 @@ void split(Work& work, std::uint32_t index) noexcept {
     ++counters.splits;
     raise_mark(counters.most_nodes, work.tree.used_nodes());
   });
-  note_blending(work, index);
   for (std::uint32_t c = parent.first_child; c != kNone; c = work.tree[c].next_sibling) {
     Node& child = work.tree[c];
     begin(pair, child, certified_now(pair, parent));
@@ -85,7 +83,7 @@ LeafContact measure_contact(Work& work, Node& node, const convex::Distance& d,
   const bool original = !is_simplified(a) && !is_simplified(b);
   if (original && !contact.interrupted) prove(pair, node, contact.lower_bound);
   work.note_cap(pair, contact);
-  if (contact.distance >= pair.delta) return contact;
+  if (contact.distance >= pair.delta || contact.share == 0) return contact;
   keep_contact(pair, a, b, contact, node);
   if (stops) work.add_contact(node, contact);
   return contact;
@@ -133,7 +131,6 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
     missing.refine_b = b.children != 0;
   }
   node.s_star = static_cast<float>(missing.s_star);
-  node.excess = static_cast<float>(missing.excess);
   if (work.proves_far(node, d)) {
     node.contact = 0;
     return;

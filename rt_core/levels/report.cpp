@@ -20,10 +20,6 @@ Vec3d in_world(const PairState& pair, Vec3d point) noexcept {
   return pair.centre_a_m + pair.rotation_a * (pair.unit_m * point);
 }
 
-Vec3d mixed(double share, Vec3d own, Vec3d other) noexcept {
-  return share * own + (1 - share) * other;
-}
-
 /// Radius from which pieces are wide, in deltas: within smaller ones a contact's place is as good
 /// as another.
 constexpr double kWide = 8;
@@ -66,8 +62,7 @@ LeafContact remeasured(const PairState& pair, const Node& node) noexcept {
   contact.upper_bound = norm(apart);
   const double along = dot(apart, contact.normal);
   const double slid = norm(apart - along * contact.normal);
-  const double guess =
-      faded(along >= 0 ? contact.upper_bound : along + slid, contact.share, pair.delta);
+  const double guess = along >= 0 ? contact.upper_bound : along + slid;
   // Points that have slid past each other may look deep where it is proved that nothing is.
   const double certified = certified_now(pair, node);
   contact.distance = guess < certified ? certified : guess;
@@ -80,17 +75,16 @@ void Report::note_upper(const PairState& pair, const Node& node,
   if (upper_m < upper_m_) upper_m_ = upper_m;
 }
 
-bool Report::add(const PairState& pair, Node& node, const LeafContact& contact) noexcept {
+bool Report::add(const PairState& pair, const Node& node, const LeafContact& contact) noexcept {
   note_upper(pair, node, contact);
   if (count_ == contacts_.size()) return false;
-  node.report = count_++;
-  Contact& out = contacts_[node.report];
+  Contact& out = contacts_[count_++];
   out.point_a_m = in_world(pair, contact.point_a);
   out.point_b_m = in_world(pair, contact.point_b);
   out.centre_m = centre_m(pair, node, contact);
   out.normal = pair.rotation_a * contact.normal;
   out.distance_m = contact.distance * pair.unit_m;
-  out.share = 1;
+  out.share = contact.share;
   out.weight = 0;
   out.pair = node.pair;
   out.piece_a = node.piece_a;
@@ -115,44 +109,13 @@ Vec3d Report::centre_m(const PairState& pair, const Node& node,
   return in_world(pair, middle + centre.share * (centre.at - middle));
 }
 
-void Report::mix_distance(const PairState& pair, const Node& node, double other,
-                          double share) noexcept {
-  const double lower_m = certified_now(pair, node) * pair.unit_m;  // as it was before mixing
-  if (lower_m < mixed_lower_m_) mixed_lower_m_ = lower_m;
-  Contact& c = contacts_[node.report];
-  c.distance_m = share * c.distance_m + (1 - share) * other * pair.unit_m;
-  if (c.distance_m >= pair.delta * pair.unit_m) c.distance_m = kInfinity;
-}
-
-void Report::blend(const PairState& pair, const Node& node, const LeafContact& other,
-                   Vec3d other_centre_m, double share) noexcept {
-  Contact& c = contacts_[node.report];
-  c.point_a_m = mixed(share, c.point_a_m, in_world(pair, other.point_a));
-  c.point_b_m = mixed(share, c.point_b_m, in_world(pair, other.point_b));
-  c.centre_m = mixed(share, c.centre_m, other_centre_m);
-  const Vec3d normal = mixed(share, c.normal, pair.rotation_a * other.normal);
-  const double length = norm(normal);
-  if (length > 0) c.normal = (1 / length) * normal;
-  mix_distance(pair, node, other.distance, share);
-}
-
-void Report::fade(const PairState& pair, const Node& node, double share) noexcept {
-  mix_distance(pair, node, pair.delta, share);
-}
-
 void Report::finish(QueryResult& result) noexcept {
-  std::uint32_t kept = 0;
   result.min_distance_m = kInfinity;
   result.upper_m = upper_m_;
-  if (mixed_lower_m_ < result.unresolved_lower_m) result.unresolved_lower_m = mixed_lower_m_;
-  for (std::uint32_t i = 0; i < count_; ++i) {
-    const Contact& c = contacts_[i];
-    if (c.distance_m == kInfinity) continue;
+  for (const Contact& c : contacts_.first(count_)) {
     if (c.distance_m < result.min_distance_m) result.min_distance_m = c.distance_m;
-    if (kept != i) contacts_[kept] = c;
-    ++kept;
   }
-  result.contacts = kept;
+  result.contacts = count_;
 }
 
 }  // namespace palpate::levels

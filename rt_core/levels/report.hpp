@@ -42,38 +42,25 @@ class Report {
   Report(std::span<Contact> contacts, convex::PressureScratch& scratch) noexcept
       : contacts_(contacts), scratch_(scratch) {}
 
-  /// Adds the contact of a node that has none yet in this tick. False where there is no room.
-  bool add(const PairState& pair, Node& node, const LeafContact& contact) noexcept;
+  /// Adds the contact of a node. False where there is no room.
+  bool add(const PairState& pair, const Node& node, const LeafContact& contact) noexcept;
 
-  /// Added so far, those that a mix has dropped too.
+  /// Added so far.
   [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
 
-  /// Where the force of a node's contact acts, in the world. O(1) (convex/pressure.hpp)
-  [[nodiscard]] Vec3d centre_m(const PairState& pair, const Node& node,
-                               const LeafContact& contact) const noexcept;
-
-  /// Mixes a node's contact with another one: `share` of its own, the rest of `other`. At delta or
-  /// more it is dropped.
-  /// @param other_centre_m  centre_m() of the other one
-  void blend(const PairState& pair, const Node& node, const LeafContact& other,
-             Vec3d other_centre_m, double share) noexcept;
-
-  /// Leaves `share` of a node's contact: the rest counts as delta.
-  void fade(const PairState& pair, const Node& node, double share) noexcept;
-
-  /// Closes gaps; fills in contacts, min_distance_m and upper_m, lowers unresolved_lower_m to what
-  /// was mixed.
+  /// Fills in contacts, min_distance_m and upper_m.
   void finish(QueryResult& result) noexcept;
 
  private:
+  /// Where the force of a node's contact acts, in the world (convex/pressure.hpp).
+  [[nodiscard]] Vec3d centre_m(const PairState& pair, const Node& node,
+                               const LeafContact& contact) const noexcept;
   void note_upper(const PairState& pair, const Node& node, const LeafContact& contact) noexcept;
-  void mix_distance(const PairState& pair, const Node& node, double other, double share) noexcept;
 
   std::span<Contact> contacts_;
   convex::PressureScratch& scratch_;
   std::uint32_t count_ = 0;
   double upper_m_ = std::numeric_limits<double>::infinity();
-  double mixed_lower_m_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace palpate::levels

@@ -33,7 +33,7 @@ Detail detail(const PairState& pair, const Piece& a, const Piece& b, const conve
   if (convex::overlaps(query)) {
     out.refine_a = a.children != 0;
     out.refine_b = b.children != 0;
-    out.s_star = out.excess = out.refine_a || out.refine_b ? kInfinity : 0;
+    out.s_star = out.refine_a || out.refine_b ? kInfinity : 0;
     return out;
   }
   const bool nothing_missing = a.surface_deviation == 0 && b.surface_deviation == 0;
@@ -50,7 +50,6 @@ Detail detail(const PairState& pair, const Piece& a, const Piece& b, const conve
   const double excess_b =
       is_too_coarse(pair, b, pair.scale_b, rules) ? kInfinity : ratio(star_b, rules.s0);
   out.s_star = larger(star_a, star_b);
-  out.excess = larger(excess_a, excess_b);
   out.refine_a = excess_a > 1 && a.children != 0;
   out.refine_b = excess_b > 1 && b.children != 0;
   return out;

@@ -13,7 +13,6 @@ namespace palpate::levels {
 /// What refinement has to know of the settings.
 struct Rules {
   bool exact = false;
-  bool interpolate = true;
   Bounds bounds = Bounds::tight;
   Order order = Order::deviation;
   double s0 = 0;
@@ -31,8 +30,6 @@ enum class Schedule : std::uint8_t {
 /// Detail that a pair of pieces leaves out.
 struct Detail {
   double s_star = 0;  ///< weighted surface deviation (eq. 7), relative to the radius
-  /// Largest ratio of s* to what s0 allows: above 1, refine. Infinite where kappa asks for more.
-  double excess = 0;
   bool refine_a = false;
   bool refine_b = false;
 };

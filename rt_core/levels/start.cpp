@@ -36,7 +36,7 @@ void restart(Work& work, PairState& pair) noexcept {
   Node& root = work.tree[pair.root];
   work.tree.collapse(pair.root);
   root.contact = 0;
-  root.s_star = root.excess = std::numeric_limits<float>::infinity();
+  root.s_star = std::numeric_limits<float>::infinity();
   begin(pair, root, -kInfinity);
   pair.fresh = false;
 }
@@ -90,13 +90,21 @@ double near_children(const Work& work, const Node& parent) noexcept {
   return near;
 }
 
+/// How near the contact is that a node keeps, at its points by now, less the share of it that is
+/// not felt; delta where it keeps none.
+double kept_distance(const PairState& pair, const Node& node) noexcept {
+  if (node.contact == 0) return pair.delta;
+  const LeafContact contact = remeasured(pair, node);
+  return pair.delta - contact.share * (pair.delta - contact.distance);
+}
+
 /// To its parent, where that has none that is nearer.
 void pass_contact_up(Work& work, const PairState& pair, const Node& node) noexcept {
   if (node.contact == 0) return;
   Node& above = work.tree[node.parent];
-  const bool better = above.contact == 0 || node.contact < above.contact ||
-                      (node.contact == above.contact &&
-                       remeasured(pair, node).distance < remeasured(pair, above).distance);
+  const bool better =
+      above.contact == 0 || node.contact < above.contact ||
+      (node.contact == above.contact && kept_distance(pair, node) < kept_distance(pair, above));
   if (better) copy_contact(node, above);
 }
 
@@ -116,11 +124,6 @@ void carry_contacts_up(Work& work, const PairState& pair) noexcept {
   }
 }
 
-/// How near the contact is that a node keeps, at its points by now; delta where it keeps none.
-double kept_distance(const PairState& pair, const Node& node) noexcept {
-  return node.contact == kFound ? remeasured(pair, node).distance : pair.delta;
-}
-
 /// Near front nodes whose parent keeps nothing nearer than `from` (share of delta) give way to it,
 /// until `most` are near. False where none did.
 bool raise_near(Work& work, double from, double most) noexcept {
@@ -131,7 +134,8 @@ bool raise_near(Work& work, double from, double most) noexcept {
     const std::uint32_t parent = work.tree[index].parent;
     if (parent == kNone || !work.is_near(work.tree[index])) continue;
     Node& above = work.tree[parent];
-    if (kept_distance(work.pair_of(above), above) < from * work.pair_of(above).delta) continue;
+    const PairState& pair = work.pair_of(above);
+    if (above.contact == kFound && kept_distance(pair, above) < from * pair.delta) continue;
     near += 1 - near_children(work, above);
     work.tree.collapse(parent);  // puts other nodes into this place
     raised = true;
@@ -178,7 +182,6 @@ void start(Work& work) noexcept {
     const std::uint32_t index = front[i];
     Node& node = work.tree[index];
     clear(node, kOfThisTick);
-    node.report = kNone;
     renew(work, node);
     wait_if_near(work, index);
   }

@@ -5,16 +5,14 @@
 
 namespace palpate::levels {
 
-void TestTree::attach(std::span<Node> nodes, std::span<std::uint32_t> front,
-                      std::span<std::uint32_t> blending) noexcept {
-  PALPATE_ASSERT(nodes.size() == front.size() && nodes.size() == blending.size());
+void TestTree::attach(std::span<Node> nodes, std::span<std::uint32_t> front) noexcept {
+  PALPATE_ASSERT(nodes.size() == front.size());
   nodes_ = nodes;
   front_ = front;
-  blending_ = blending;
 }
 
 void TestTree::clear() noexcept {
-  front_size_ = blending_size_ = free_count_ = 0;
+  front_size_ = free_count_ = 0;
   free_head_ = kNone;
   // Lowest index first, so that the order of nodes is the same on every run.
   for (std::size_t i = nodes_.size(); i > 0; --i) {
@@ -33,7 +31,6 @@ std::uint32_t TestTree::take() noexcept {
 }
 
 void TestTree::give_back(std::uint32_t node) noexcept {
-  set_blending(node, false);
   nodes_[node].next_sibling = free_head_;
   free_head_ = node;
   ++free_count_;
@@ -51,21 +48,6 @@ void TestTree::leave_front(std::uint32_t node) noexcept {
   front_[slot] = last;
   nodes_[last].front_slot = slot;
   nodes_[node].front_slot = kNone;
-}
-
-void TestTree::set_blending(std::uint32_t node, bool on) noexcept {
-  const std::uint32_t slot = nodes_[node].blending_slot;
-  if (on == (slot != kNone)) return;
-  if (on) {
-    PALPATE_ASSERT(!in_front(node));
-    nodes_[node].blending_slot = blending_size_;
-    blending_[blending_size_++] = node;
-    return;
-  }
-  const std::uint32_t last = blending_[--blending_size_];
-  blending_[slot] = last;
-  nodes_[last].blending_slot = slot;
-  nodes_[node].blending_slot = kNone;
 }
 
 std::uint32_t TestTree::add_root(std::uint16_t pair, std::uint32_t piece_a,
@@ -120,7 +102,6 @@ void TestTree::collapse(std::uint32_t top) noexcept {
     nodes_[parent].first_child = sibling;
     node = sibling != kNone ? sibling : parent;
   }
-  set_blending(top, false);
   enter_front(top);
 }
 

@@ -44,11 +44,8 @@ struct alignas(64) Node {
   // Links.
   std::uint32_t parent = kNone;
   std::uint32_t first_child = kNone;
-  std::uint32_t next_sibling = kNone;   ///< also links the free list
-  std::uint32_t front_slot = kNone;     ///< place in the front; kNone inside the tree
-  std::uint32_t blending_slot = kNone;  ///< place among the blending nodes; kNone for others
-  std::uint32_t report = kNone;  ///< its contact of this tick; inside the tree: the last tick in
-                                 ///< which it was mixed
+  std::uint32_t next_sibling = kNone;  ///< also links the free list
+  std::uint32_t front_slot = kNone;    ///< place in the front; kNone inside the tree
   // Of the last query.
   Vec3f witness_a{};  ///< of the contact, in the coordinates of a
   Vec3f witness_b{};  ///< in the coordinates of b
@@ -57,12 +54,11 @@ struct alignas(64) Node {
                       ///< hulls, zero before the first
   float slack = 0;    ///< the original surfaces are at most this farther apart than the witnesses
   float s_star = 0;   ///< eq. 7; an ancestor's until the node is measured
-  float excess = 0;   ///< Detail::excess
   // Warm starts.
   convex::Cache own;      ///< of the pieces' hulls
   convex::Cache culling;  ///< of their culling hulls
 };
-static_assert(offsetof(Node, witness_a) == 64 && sizeof(Node) == 192);
+static_assert(offsetof(Node, witness_a) <= 64 && sizeof(Node) == 192);
 
 inline void set(Node& node, std::uint8_t flags) noexcept {
   node.flags = static_cast<std::uint8_t>(node.flags | flags);
@@ -73,14 +69,12 @@ inline void clear(Node& node, std::uint8_t flags) noexcept {
 
 /// A fixed pool of nodes, one tree for every body pair, all fronts in one array. A node is replaced
 /// by *all* its children or all children by their parent, so that the front covers every pair of
-/// surface regions at every moment. Nodes inside the tree may be marked as blending: found again
-/// without a walk over the front.
+/// surface regions at every moment.
 class TestTree {
  public:
   /// Tells where the nodes are, or are now: their values stay.
-  /// @param nodes, front, blending  of equal length: the capacity
-  void attach(std::span<Node> nodes, std::span<std::uint32_t> front,
-              std::span<std::uint32_t> blending) noexcept;
+  /// @param nodes, front  of equal length: the capacity
+  void attach(std::span<Node> nodes, std::span<std::uint32_t> front) noexcept;
 
   /// Empties the pool.
   void clear() noexcept;
@@ -96,12 +90,6 @@ class TestTree {
 
   /// Replaces everything below a node by the node itself. O(nodes below).
   void collapse(std::uint32_t node) noexcept;
-
-  /// Marks a node inside the tree, until it is back in the front or gone.
-  void set_blending(std::uint32_t node, bool on) noexcept;
-  [[nodiscard]] std::span<const std::uint32_t> blending() const noexcept {
-    return blending_.first(blending_size_);
-  }
 
   [[nodiscard]] bool in_front(std::uint32_t node) const noexcept {
     return nodes_[node].front_slot != kNone;
@@ -122,9 +110,7 @@ class TestTree {
 
   std::span<Node> nodes_;
   std::span<std::uint32_t> front_;
-  std::span<std::uint32_t> blending_;
   std::uint32_t front_size_ = 0;
-  std::uint32_t blending_size_ = 0;
   std::uint32_t free_head_ = kNone;
   std::uint32_t free_count_ = 0;
 };

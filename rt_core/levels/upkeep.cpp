@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/upkeep.hpp"
 
-#include "rt_core/levels/interpolate.hpp"
-
 namespace palpate::levels {
 namespace {
 
@@ -32,25 +30,13 @@ bool children_far(const Work& work, const Node& parent) noexcept {
   return true;
 }
 
-/// Whether the parent gives no contact, nor does anything below it.
-bool raise_far(Work& work, std::uint32_t parent) noexcept {
+/// Where the parent gives no contact, nor does anything below it.
+void raise_far(Work& work, std::uint32_t parent) noexcept {
   Node& node = work.tree[parent];
-  if (!children_far(work, node) || (work.is_near(node) && !work.proves_far(node))) return false;
+  if (!children_far(work, node) || (work.is_near(node) && !work.proves_far(node))) return;
   work.tree.collapse(parent);
   node.contact = 0;
   clear(node, kOfThisTick);
-  return true;
-}
-
-void renew_detail(Work& work, std::uint32_t parent) noexcept {
-  Node& node = work.tree[parent];
-  if (!work.rules.interpolate || work.rules.exact || !may_mix(work, node) || !work.is_near(node))
-    return;
-  const PairState& pair = work.pair_of(node);
-  const convex::Distance d = work.probe.own(pair, node);
-  node.excess = static_cast<float>(
-      detail(pair, piece_a(pair, node), piece_b(pair, node), d, work.rules).excess);
-  note_blending(work, parent);
 }
 
 }  // namespace
@@ -65,8 +51,7 @@ void raise(Work& work) noexcept {
     if (next >= tree.front().size()) next = 0;
     const std::uint32_t parent = tree[tree.front()[next++]].parent;
     if (parent == kNone) continue;
-    const bool raised = children_in_front(tree, tree[parent]) && raise_far(work, parent);
-    if (!raised && !work.out_of_budget()) renew_detail(work, parent);
+    if (children_in_front(tree, tree[parent])) raise_far(work, parent);
   }
 }
 

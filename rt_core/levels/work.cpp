@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_core/levels/work.hpp"
 
-#include "rt_core/base/assert.hpp"
-
 namespace palpate::levels {
 
 bool Work::only_culls(const Node& node) const noexcept {
@@ -78,7 +76,6 @@ void Work::note_cap(const PairState& pair, const LeafContact& contact) noexcept 
 void Work::leave_time_for_contacts() noexcept { meter.expect_contacts(report.count() + kept); }
 
 void Work::add_contact(Node& node, const LeafContact& contact) noexcept {
-  PALPATE_ASSERT(node.report == kNone);
   PairState& pair = pair_of(node);
   if (contact.distance >= pair.delta) return;
   if (contact.distance < pair.nearest) pair.nearest = contact.distance;

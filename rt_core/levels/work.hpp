@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the stages of one query share: start, refine, interpolate, upkeep.
+// What the stages of one query share: start, refine, upkeep.
 #pragma once
 
 #include <cstdint>

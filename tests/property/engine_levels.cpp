@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Selective refinement on simplified levels: certificates, settings, interpolation, and images that
-// hold only what a scene requires.
+// Selective refinement on simplified levels: certificates, settings, and images that hold only what
+// a scene requires.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,9 +23,7 @@ Pose slide(int i) {
           turn({0.01 * i, 0.004 * i, 0})};
 }
 
-Settings with_s0(double s0, bool interpolate = true) {
-  return {.delta_m = kDelta, .s0 = s0, .interpolate = interpolate, .cluster_radius_m = 0.1};
-}
+Settings with_s0(double s0) { return {.delta_m = kDelta, .s0 = s0, .cluster_radius_m = 0.1}; }
 
 TEST(EngineLevels, bodies_have_several_simplified_levels) {
   for (const ImageView* image : {&bodies().a.view, &bodies().b.view})
@@ -35,15 +33,13 @@ TEST(EngineLevels, bodies_have_several_simplified_levels) {
 TEST(EngineLevels, certificate_holds_whatever_is_left_out) {
   const std::vector<double> truth = distances_along(bodies().a.mesh, bodies().b.mesh, slide, 30);
   for (const double s0 : {0.0, 1e-3, 0.01, 0.05, 0.5, 1e3}) {
-    for (const bool interpolate : {false, true}) {
-      for (const std::uint64_t units : {3u, 30u, 300u, 1000000u}) {
-        BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, with_s0(s0, interpolate));
-        for (int i = 0; i < 30; ++i) {
-          const Pose poses[2] = {slide(i), {}};
-          const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
-          EXPECT_LE(r.queries, units);
-          expect_certified(r, truth[static_cast<std::size_t>(i)], kDelta);
-        }
+    for (const std::uint64_t units : {3u, 30u, 300u, 1000000u}) {
+      BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, with_s0(s0));
+      for (int i = 0; i < 30; ++i) {
+        const Pose poses[2] = {slide(i), {}};
+        const TickResult r = tick_or_fail(*scene.engine, poses, {.units = units});
+        EXPECT_LE(r.queries, units);
+        expect_certified(r, truth[static_cast<std::size_t>(i)], kDelta);
       }
     }
   }
@@ -86,14 +82,10 @@ TEST(EngineLevels, contact_is_not_lost_where_pieces_of_several_levels_meet) {
   const BakedBody ellipsoid(bake::make_model("ellipsoid", 1000));
   const BakedBody ball(bake::make_model("golf_ball", 4000));
   const std::vector<Pose> path = rolled(ellipsoid, ball, kDelta_m);
-  for (const bool interpolate : {false, true}) {
-    BakedScene scene({ellipsoid.view, ball.view}, {{0, 1}},
-                     {.delta_m = kDelta_m, .s0 = 0.05, .interpolate = interpolate});
-    for (std::size_t i = 0; i < path.size(); ++i) {
-      const Pose poses[2] = {path[i], {}};
-      EXPECT_FALSE(tick_or_fail(*scene.engine, poses).contacts.empty())
-          << "tick " << i << (interpolate ? ", interpolated" : "");
-    }
+  BakedScene scene({ellipsoid.view, ball.view}, {{0, 1}}, {.delta_m = kDelta_m, .s0 = 0.05});
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const Pose poses[2] = {path[i], {}};
+    EXPECT_FALSE(tick_or_fail(*scene.engine, poses).contacts.empty()) << "tick " << i;
   }
 }
 
@@ -130,7 +122,7 @@ TEST(EngineLevels, larger_thresholds_need_smaller_fronts) {
 }
 
 TEST(EngineLevels, kappa_bounds_the_deviation_that_is_left) {
-  Settings settings = with_s0(1e3, false);
+  Settings settings = with_s0(1e3);
   for (const double kappa : {0.1, 0.5, 2.0}) {
     settings.kappa = kappa;
     BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, settings);
@@ -176,10 +168,10 @@ TEST(EngineLevels, contacts_do_not_depend_on_history) {
   }
 }
 
-// Closer and closer in steps so small, and at one place, that without interpolation only a change
-// of level can make the force jump. It ends well apart: where edges nearly touch normals turn fast.
-double largest_jump(double s0, bool interpolate) {
-  Settings settings = with_s0(s0, interpolate);
+// Closer and closer in steps so small, and at one place, that only a change of level can make the
+// force jump. It ends well apart: where edges nearly touch normals turn fast.
+double largest_jump(double s0) {
+  Settings settings = with_s0(s0);
   settings.cluster_radius_m = 10;
   BakedScene scene({bodies().a.view, bodies().b.view}, {{0, 1}}, settings);
   double last = 0, largest = 0;
@@ -192,8 +184,9 @@ double largest_jump(double s0, bool interpolate) {
   return largest;
 }
 
-TEST(EngineLevels, interpolation_makes_jumps_smaller) {
-  EXPECT_LT(largest_jump(0.05, true), 0.25 * largest_jump(0.05, false));
+TEST(EngineLevels, force_hardly_jumps_where_a_level_changes) {
+  const Settings settings = with_s0(0.05);
+  EXPECT_LT(largest_jump(0.05), 0.1 * settings.stiffness_N_per_m * settings.delta_m);
 }
 
 /// The same body without its finest levels.
@@ -216,17 +209,15 @@ TEST(EngineLevels, image_without_its_finest_levels_gives_the_same_bits_within_it
   const image::Header& header = *small.view.header;
   ASSERT_GT(header.dropped_levels, 0u);
   const auto s0 = static_cast<double>(header.s0_min);
-  for (const bool interpolate : {false, true}) {
-    for (const std::uint64_t units : {40u, 1000000u}) {
-      Settings settings = with_s0(s0, interpolate);
-      BakedScene whole({bodies().a.view, bodies().b.view}, {{0, 1}}, settings);
-      BakedScene part({small.view, bodies().b.view}, {{0, 1}}, settings);
-      for (int i = 0; i < 40; ++i) {
-        const Pose poses[2] = {slide(i), {}};
-        const TickResult w = tick_or_fail(*whole.engine, poses, {.units = units});
-        const TickResult p = tick_or_fail(*part.engine, poses, {.units = units});
-        ASSERT_EQ(row_of(w), row_of(p)) << "tick " << i << ", " << units << " units";
-      }
+  for (const std::uint64_t units : {40u, 1000000u}) {
+    const Settings settings = with_s0(s0);
+    BakedScene whole({bodies().a.view, bodies().b.view}, {{0, 1}}, settings);
+    BakedScene part({small.view, bodies().b.view}, {{0, 1}}, settings);
+    for (int i = 0; i < 40; ++i) {
+      const Pose poses[2] = {slide(i), {}};
+      const TickResult w = tick_or_fail(*whole.engine, poses, {.units = units});
+      const TickResult p = tick_or_fail(*part.engine, poses, {.units = units});
+      ASSERT_EQ(row_of(w), row_of(p)) << "tick " << i << ", " << units << " units";
     }
   }
 }

@@ -111,16 +111,5 @@ TEST(GroundJawsSlowly, without_steadying_it_is_worse_where_a_budget_ends_it) {
             1.1 * largest_steps(simplified, kFew, 0.1, true).force_N);
 }
 
-/// Each contact is a constraint of the least push: mixing two of them adds none and takes none
-/// away.
-TEST(GroundJawsSlowly, interpolation_leaves_the_steps_no_smaller) {
-  for (const double s0 : {0.015, 0.05}) {
-    const double plain = largest_steps({.s0 = s0}, kUnlimited, 0.1, false).force_N;
-    const double mixed =
-        largest_steps({.s0 = s0, .interpolate = true}, kUnlimited, 0.1, false).force_N;
-    EXPECT_LE(plain, mixed) << "s0 " << s0;
-  }
-}
-
 }  // namespace
 }  // namespace palpate::test

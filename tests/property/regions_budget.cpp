@@ -215,7 +215,6 @@ TEST(RegionsBudget, counters_tell_where_ticks_spend_their_time_and_how_many_regi
   for (const Stage stage : {Stage::start, Stage::refine, Stage::force}) {
     EXPECT_GT(c.stage_ns[static_cast<std::size_t>(stage)], 0u) << static_cast<int>(stage);
   }
-  EXPECT_EQ(c.stage_ns[static_cast<std::size_t>(Stage::interpolate)], 0u);
 }
 
 TEST(RegionsBudget, few_contacts_are_a_reported_graceful_stop) {

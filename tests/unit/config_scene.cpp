@@ -58,7 +58,6 @@ TEST_F(ConfigScene, OnlyBodies_load_defaults) {
   EXPECT_EQ(s.settings.delta_m, 0.0005);
   EXPECT_EQ(s.settings.s0, 0.025);
   EXPECT_FALSE(s.settings.exact);
-  EXPECT_FALSE(s.settings.interpolate);
   EXPECT_FALSE(s.budget_us.has_value());
   EXPECT_FALSE(s.reserve_us.has_value());
   EXPECT_EQ(s.settings.max_force_N, 3.0);
@@ -136,7 +135,6 @@ b = "a"
   EXPECT_EQ(s.settings.delta_m, 0.001);
   EXPECT_EQ(s.settings.s0, 0.05);
   EXPECT_TRUE(s.settings.exact);
-  EXPECT_TRUE(s.settings.interpolate);
   EXPECT_EQ(s.budget_us, 400.0);
   EXPECT_EQ(s.reserve_us, 150.0);
   EXPECT_EQ(s.settings.stiffness_N_per_m, 500.0);

@@ -64,7 +64,6 @@ TEST_F(ReportSweep, each_missing_or_mistyped_key_is_refused_by_name_and_place) {
                           "s0",
                           "kappa",
                           "budget_us",
-                          "interpolate",
                           "bounds",
                           "delta_m",
                           "median_ns",

@@ -18,15 +18,14 @@ SweepAxes axes() {
   a.force_tolerance_N = {0, 0.5};
   a.budget_us = {kNoLimit, 100};
   a.delta_m = {0.001, 0.002};
-  a.interpolate = {true, false};
   a.bounds = {Bounds::tight};
   return a;
 }
 
 TEST(SweepSettings, Combinations_are_all_there_once_after_the_exact_ones) {
   const auto settings = expand(axes());
-  // A delta: three exact, 2 * 2 * 2 * 2 of levels, 2 * 2 of regions.
-  ASSERT_EQ(settings.size(), 2u * (3 + 16 + 4));
+  // A delta: three exact, 2 * 2 * 2 of levels, 2 * 2 of regions.
+  ASSERT_EQ(settings.size(), 2u * (3 + 8 + 4));
   std::set<std::string> ids;
   for (const SweepSetting& s : settings) ids.insert(id_of(s));
   EXPECT_EQ(ids.size(), settings.size());

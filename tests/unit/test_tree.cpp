@@ -11,13 +11,12 @@ namespace palpate::levels {
 namespace {
 
 struct Pool {
-  explicit Pool(std::size_t n) : nodes(n), slots(n), blending(n) {
-    tree.attach(nodes, slots, blending);
+  explicit Pool(std::size_t n) : nodes(n), slots(n) {
+    tree.attach(nodes, slots);
     tree.clear();
   }
   std::vector<Node> nodes;
   std::vector<std::uint32_t> slots;
-  std::vector<std::uint32_t> blending;
   TestTree tree;
 };
 

@@ -47,7 +47,6 @@ constexpr Variant kSimplified[] = {
     {"s0 = 0.025", [](Settings&) {}},
     {"s0 = 0.2", [](Settings& s) { s.s0 = 0.2; }},
     {"s0 = 0.025, bounds = paper", [](Settings& s) { s.bounds = Bounds::paper; }},
-    {"s0 = 0.025, interpolated", [](Settings& s) { s.interpolate = true; }},
     {"kappa = 0.1", [](Settings& s) {
        s.s0 = 1e6;
        s.kappa = 0.1;

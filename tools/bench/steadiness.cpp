@@ -6,8 +6,8 @@
 // With N, `regions` alone on jaws ground, under N budgets from 200 to 2,600 units.
 //
 // A row (CSV) for each motion, speed, setting and budget: the largest change of force between two
-// ticks over that of the same engine's exact query on the same motion, of the engine as it is,
-// interpolated (which `regions` does not do), and steadied as `palpate run` does; how many
+// ticks over that of the same engine's exact query on the same motion, of the engine as it is and
+// steadied as `palpate run` does; how many
 // ticks change it by more than four fifths of the exact query's largest change; and the error of
 // the force against the exact one (NRMSE of the peak). Virtual time and work units: the same
 // figures on every machine.
@@ -115,10 +115,7 @@ void measure(const Scene& scene, double speed_m_per_s, const std::vector<Pose>& 
       std::printf("%s,%g,\"%s\",%s,%.4f", scene.name, speed_m_per_s, setting.name, budget.c_str(),
                   largest(steps(exact)));
       const Settings& settings = setting.settings;
-      Settings interpolated = settings;
-      interpolated.interpolate = true;
       print_column(forces(scene, poses, settings, units, kNotSteadied), exact);
-      print_column(forces(scene, poses, interpolated, units, kNotSteadied), exact);
       print_column(forces(scene, poses, settings, units, {}), exact);
       std::printf("\n");
       std::fflush(stdout);
@@ -167,7 +164,7 @@ void measure_rolled(int ticks) {
 int main(int argc, char** argv) {
   const int ticks = argc > 1 ? std::max(100, std::atoi(argv[1])) : 640;
   std::printf("motion,speed_m_per_s,setting,units,exact_step_N");
-  for (const char* column : {"engine", "interpolated", "steadied"}) {
+  for (const char* column : {"engine", "steadied"}) {
     std::printf(",%s_step,%s_large,%s_nrmse", column, column, column);
   }
   std::printf("\n");

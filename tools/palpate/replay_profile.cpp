@@ -7,8 +7,7 @@
 namespace palpate::cli {
 namespace {
 
-constexpr const char* kStageNames[kStages] = {"start",  "refine", "interpolate",
-                                              "upkeep", "settle", "force"};
+constexpr const char* kStageNames[kStages] = {"start", "refine", "upkeep", "settle", "force"};
 
 struct Count {
   const char* name;

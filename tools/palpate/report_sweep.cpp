@@ -73,7 +73,6 @@ std::string words_of(const SettingRow& row, bool levels, bool exact) {
   add_number("budget_us", "budget", 1, " µs");
   if (levels) {
     if (!row.at("bounds").is_null() && row.text("bounds") == "paper") add("paper's bounds");
-    if (!row.at("interpolate").is_null() && row.flag("interpolate")) add("interpolated");
   }
   add_number("delta_m", "delta", 1e3, " mm");
   return out;

@@ -28,7 +28,6 @@ constexpr double kSharesOfBudget[] = {0.5, 0.75, 0.9};
 struct SweepArguments {
   std::string scene, poses, folder;
   std::vector<std::string> engines = {"levels", "regions"}, bounds = {"tight"};
-  std::vector<bool> interpolate;
   std::vector<double> s0 = {0.005, 0.01, 0.025, 0.05}, kappa, force_tolerance_N, budget_us, delta_m;
   Observer observer;
   SweepRuns runs;
@@ -49,7 +48,6 @@ SweepAxes axes_of(const SweepArguments& a, const config::Scene& scene) {
   axes.s0 = a.s0;
   axes.kappa = a.kappa.empty() ? std::vector{scene.kappa.value_or(kNoLimit)} : a.kappa;
   axes.delta_m = a.delta_m.empty() ? std::vector{scene.settings.delta_m} : a.delta_m;
-  axes.interpolate = a.interpolate.empty() ? std::vector<bool>{false} : a.interpolate;
   axes.force_tolerance_N = a.force_tolerance_N;
   for (const double share : kToleranceShares) {
     if (!a.force_tolerance_N.empty()) break;
@@ -182,7 +180,6 @@ void add_axes(CLI::App& command, SweepArguments& a) {
   command.add_option("--budget-us", a.budget_us, "µs, or inf; default: inf")
       ->delimiter(',')
       ->check(number_or_inf(0, 1e9));
-  command.add_option("--interpolate", a.interpolate, "true, false; default: false")->delimiter(',');
   command.add_option("--bounds", a.bounds, "tight, paper")
       ->delimiter(',')
       ->check(CLI::IsMember({"tight", "paper"}))

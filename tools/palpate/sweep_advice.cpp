@@ -33,7 +33,6 @@ void put_setting(const SweepSetting& s, double budget_us, toml::table& engine) {
     return;
   }
   engine.insert_or_assign("s0", s.s0);
-  engine.insert_or_assign("interpolate", s.interpolate);
   engine.insert_or_assign("bounds", s.bounds == Bounds::paper ? "paper" : "tight");
   if (std::isfinite(s.kappa)) engine.insert_or_assign("kappa", s.kappa);
 }

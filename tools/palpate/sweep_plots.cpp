@@ -55,7 +55,7 @@ std::string name_of(const SweepSetting& s) {
 bool is_profile(const SweepSetting& s, const SweepSetting& first) {
   if (s.delta_m != first.delta_m || std::isfinite(s.budget_us)) return false;
   return s.exact || s.engine == EngineKind::regions ||
-         (std::isinf(s.kappa) && !s.interpolate && s.bounds == Bounds::tight);
+         (std::isinf(s.kappa) && s.bounds == Bounds::tight);
 }
 
 Series line(const SweepSetting& setting, std::span<const TickRow> ticks,

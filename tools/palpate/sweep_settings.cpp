@@ -34,7 +34,6 @@ void add_levels(std::vector<SweepSetting>& out, const SweepAxes& axes, double de
   cross(all, axes.bounds, &SweepSetting::bounds);
   cross(all, axes.s0, &SweepSetting::s0);
   cross(all, axes.kappa, &SweepSetting::kappa);
-  cross(all, axes.interpolate, &SweepSetting::interpolate);
   cross(all, axes.budget_us, &SweepSetting::budget_us);
   for (const SweepSetting& setting : all) add(out, setting);
 }
@@ -76,7 +75,6 @@ std::string id_of(const SweepSetting& s) {
   if (!s.exact && levels) {
     id += "-s0_" + text(s.s0);
     if (std::isfinite(s.kappa)) id += "-kappa_" + text(s.kappa);
-    if (s.interpolate) id += "-interpolated";
   }
   if (!s.exact && !levels) id += "-tolerance_" + text(s.force_tolerance_N);
   if (levels && s.bounds == Bounds::paper) id += "-paper_bounds";
@@ -94,7 +92,6 @@ config::Scene with_setting(const config::Scene& scene, const SweepSetting& s) {
   out.settings.exact = s.exact;
   out.settings.s0 = s.s0;
   out.settings.force_tolerance_N = s.force_tolerance_N;
-  out.settings.interpolate = s.interpolate;
   out.settings.bounds = s.bounds;
   out.settings.delta_m = s.delta_m;
   out.kappa.reset();

@@ -20,7 +20,6 @@ struct SweepSetting {
   double kappa = kNoLimit;        ///< levels, not exact; infinity: no such rule
   double force_tolerance_N = 0;   ///< regions, not exact
   double budget_us = kNoLimit;    ///< infinity: none; exact: none
-  bool interpolate = false;       ///< levels
   Bounds bounds = Bounds::tight;  ///< levels
   double delta_m = 0;
 
@@ -31,7 +30,6 @@ struct SweepSetting {
 struct SweepAxes {
   std::vector<EngineKind> engines;
   std::vector<double> s0, kappa, force_tolerance_N, budget_us, delta_m;
-  std::vector<bool> interpolate;
   std::vector<Bounds> bounds;
 };
 

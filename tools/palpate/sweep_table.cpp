@@ -81,7 +81,7 @@ void put_setting(const SweepSetting& s, Json& out) {
   out["kappa"] = where(levels && !s.exact, number(s.kappa));
   out["force_tolerance_N"] = where(!levels && !s.exact, s.force_tolerance_N);
   out["budget_us"] = number(s.budget_us);
-  out["interpolate"] = where(levels, s.interpolate);
+  out["interpolate"] = where(levels, false);
   out["bounds"] = where(levels, s.bounds == Bounds::paper ? "paper" : "tight");
   out["delta_m"] = s.delta_m;
 }
@@ -134,7 +134,6 @@ SweepSetting setting_of(const Json& row) {
   take("kappa", s.kappa);
   take("force_tolerance_N", s.force_tolerance_N);
   take("budget_us", s.budget_us);
-  take("interpolate", s.interpolate);
   take("delta_m", s.delta_m);
   return s;
 }
