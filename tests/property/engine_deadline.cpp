@@ -13,6 +13,7 @@ namespace palpate::test {
 namespace {
 
 constexpr std::uint64_t kDeadline_ns = 1'000'000;
+constexpr std::size_t kTriangles = effort<std::size_t>(1500, 700);
 
 /// The deadline has passed from one reading on.
 struct JumpingClock {
@@ -45,11 +46,11 @@ void PrintTo(const Case& c, std::ostream* os) { *os << c.name; }
 class EngineDeadline : public testing::TestWithParam<Case> {
  protected:
   static const BakedBody& upper() {
-    static const BakedBody body(bake::make_model("jaw_upper", 1500), bake::ForEngine::both);
+    static const BakedBody body(bake::make_model("jaw_upper", kTriangles), bake::ForEngine::both);
     return body;
   }
   static const BakedBody& lower() {
-    static const BakedBody body(bake::make_model("jaw_lower", 1500), bake::ForEngine::both);
+    static const BakedBody body(bake::make_model("jaw_lower", kTriangles), bake::ForEngine::both);
     return body;
   }
 };

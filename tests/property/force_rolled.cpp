@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/effort.hpp"
@@ -92,9 +94,17 @@ class RolledEllipsoid : public testing::TestWithParam<bool> {
   }
 
   const std::vector<Pose> way_ = poses(GetParam());
-  const std::vector<Vec3d> levels_ = forces(way_, {.exact = true}).found;
-  const std::vector<Vec3d> regions_ =
-      forces(way_, {.engine = EngineKind::regions, .exact = true}).found;
+  const std::vector<Vec3d>& levels_ = exact(GetParam(), EngineKind::levels);
+  const std::vector<Vec3d>& regions_ = exact(GetParam(), EngineKind::regions);
+
+ private:
+  /// Computed once.
+  static const std::vector<Vec3d>& exact(bool fast, EngineKind engine) {
+    static std::map<std::pair<bool, EngineKind>, std::vector<Vec3d>> known;
+    std::vector<Vec3d>& out = known[{fast, engine}];
+    if (out.empty()) out = forces(poses(fast), {.engine = engine, .exact = true}).found;
+    return out;
+  }
 };
 
 TEST_P(RolledEllipsoid, steadied_force_steps_at_most_half_as_far_again_as_the_exact_one) {

@@ -25,6 +25,13 @@ Settings settings(double delta_m) {
           .cluster_radius_m = delta_m};
 }
 
+/// Without stiffness an exact query asks for distances alone: to place a body by.
+Settings distances(double delta_m) {
+  Settings out = settings(delta_m);
+  out.stiffness_N_per_m = 0;
+  return out;
+}
+
 BakedBody baked(bake::Mesh mesh, double delta_rel) {
   bake::BakeOptions options = options_for(bake::ForEngine::regions);
   options.delta_rel = delta_rel;
@@ -38,7 +45,7 @@ struct Slide {
         a(baked(std::move(moved), delta)),
         b(baked(std::move(fixed), delta)),
         scene({a.view, b.view}, {{0, 1}}, settings(delta)),
-        wide({a.view, b.view}, {{0, 1}}, settings(2 * delta)) {}
+        wide({a.view, b.view}, {{0, 1}}, distances(2 * delta)) {}
 
   static Vec3d out_at(double angle) {
     const Vec3d out{std::sin(angle), 0.2, std::cos(angle)};
@@ -184,7 +191,8 @@ TEST(RegionsOverlap, force_hardly_depends_on_how_surfaces_are_divided) {
     EXPECT_GT(upper.view.regions.size(), 1.5 * double(regions_before));
     regions_before = upper.view.regions.size();
     BakedScene scene({upper.view, lower.view}, {{0, 1}}, settings(kDelta_m));
-    if (path.empty()) path = ground(scene, kDelta_m);
+    BakedScene placing({upper.view, lower.view}, {{0, 1}}, distances(kDelta_m));
+    if (path.empty()) path = ground(placing, kDelta_m);
     const std::vector<Vec3d> forces_N = forces_along(path, scene);
     if (first_N.empty()) first_N = forces_N;
     EXPECT_GT(largest(first_N), 0.1);
@@ -225,7 +233,8 @@ TEST(RegionsOverlap, both_flanks_of_a_thread_are_felt_where_regions_are_as_wide_
     const BakedBody nut = baked(bake::make_model("nut", 8000), made_for);
     const double delta_m = kDeltaRel * nut.view.header->radius_m;
     BakedScene scene({screw.view, nut.view}, {{0, 1}}, settings(delta_m));
-    if (path.empty()) path = pushed(scene, delta_m);
+    BakedScene placing({screw.view, nut.view}, {{0, 1}}, distances(delta_m));
+    if (path.empty()) path = pushed(placing, delta_m);
     const std::vector<Vec3d> forces_N = forces_along(path, scene);
     if (fine_N.empty()) fine_N = forces_N;
     EXPECT_GT(largest(fine_N), 0.5 * kStiffness_N_per_m * delta_m);

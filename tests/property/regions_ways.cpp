@@ -7,6 +7,7 @@
 
 #include "host_bake/models/models.hpp"
 #include "tests/support/answers.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/support/placements.hpp"
 #include "tests/support/shapes.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 // PALPATE_WAYS and PALPATE_TRIANGLES are set by the build, for a short test and a long one.
 constexpr int kWays = PALPATE_WAYS;
 constexpr std::size_t kTriangles = PALPATE_TRIANGLES;
-constexpr int kTicks = 40;  // of one way
+constexpr int kTicks = effort(40, 15);  // of one way
 constexpr double kRough = 0.002;
 constexpr double kRounding = 2e-6;  // of the larger radius, 1
 constexpr double kTolerance_N = 1;
