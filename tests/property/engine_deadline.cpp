@@ -13,7 +13,7 @@ namespace palpate::test {
 namespace {
 
 constexpr std::uint64_t kDeadline_ns = 1'000'000;
-constexpr std::size_t kTriangles = effort<std::size_t>(1500, 700);
+constexpr std::size_t kTriangles = effort<std::size_t>(1500, 1000);
 
 /// The deadline has passed from one reading on.
 struct JumpingClock {

@@ -60,7 +60,8 @@ TEST(EngineLevels, wrench_turns_with_the_world_where_every_tick_is_a_jump) {
 /// An ellipsoid slides and rolls over a golf ball, 0.4 delta above it.
 std::vector<Pose> rolled(const BakedBody& ellipsoid, const BakedBody& ball, double delta_m) {
   constexpr double kApart_m = 0.0414;
-  BakedScene wide({ellipsoid.view, ball.view}, {{0, 1}}, {.delta_m = 0.006, .exact = true, .stiffness_N_per_m = 0});
+  BakedScene wide({ellipsoid.view, ball.view}, {{0, 1}},
+                  {.delta_m = 0.006, .exact = true, .stiffness_N_per_m = 0});
   std::vector<Pose> path;
   for (int i = 0; i < effort(400, 40); ++i) {
     const double u = 0.0035 * i;
