@@ -55,8 +55,8 @@ enum { PALPATE_BY_DEVIATION = 0, PALPATE_BY_FORCE = 1 };
 
 /* Start from palpate_default_settings(): fields are only ever added. */
 typedef struct palpate_settings {
-  uint32_t engine; /* fixed when the engine is made */
-  uint32_t exact;  /* 0 or 1: prove the wrench */
+  uint32_t engine;      /* fixed when the engine is made */
+  uint32_t exact;       /* 0 or 1: prove the wrench */
   uint32_t interpolate; /* not used any more */
   uint32_t bounds;
   uint32_t order;
