@@ -19,7 +19,8 @@ struct Target {
   const regions::Kernels* kernels = nullptr;
 };
 
-/// Of float boxes and cells, in image coordinates, times one more than what is farthest.
+/// What float rounding takes from boxes and cells at distance x from the origin is at most
+/// (1 + x) times this, in image coordinates.
 inline constexpr double kFloatRounding = 2e-6;
 /// Work units: a node is one, and so are this many triangles.
 inline constexpr std::uint32_t kTrianglesPerUnit = 4;

@@ -37,9 +37,8 @@ struct LeafContact {
 /// may stop (hidden_a, hidden_b). Pieces of open or self-crossing components have no inside; there
 /// the triangles of the patch are queried one by one instead of the hull. Overlapping hulls:
 /// penetration depth (Appendix B, step 2b). Departure from the paper: a contact counts as much as
-/// both patches face along its normal (facing.hpp), as contacts of surfaces do (docs/CONTACT.md):
-/// the shortest way out of a thin piece is often through its back, and pieces that have passed
-/// through each other are nearest back to back.
+/// both patches face along its normal (facing.hpp), because the shortest way out of a thin piece is
+/// often through its back, and pieces that have passed through each other are nearest back to back.
 /// @param query         the result for the hulls of a and b
 /// @param reach         only contacts nearer than this are wanted
 /// @param most_queries  to spend on triangles; beyond that the contact may not be the nearest

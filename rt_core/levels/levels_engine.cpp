@@ -29,9 +29,7 @@ void settle(Work& work) noexcept {
   for (const Waiting& item : work.waiting.items()) work.leave_doubtful(item.node);
   for (const std::uint32_t index : work.stopped.all()) {
     const Node& node = work.tree[index];
-    if (work.tree.in_front(index) && is_approximate(work, node)) {
-      work.leave_unresolved(work.certified_m(node), node);
-    }
+    if (is_approximate(work, node)) work.leave_unresolved(work.certified_m(node), node);
   }
 }
 
@@ -63,7 +61,6 @@ void run(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally, Sc
 }  // namespace
 
 QueryResult query(QueryMemory& memory, const Rules& rules, Meter& meter, Tally& tally) noexcept {
-  ++memory.ticks;
   const bool endless = rules.exact && !meter.limited();
   QueryResult found;
   if (endless && !memory.short_of_room) {

@@ -29,7 +29,6 @@ struct QueryMemory {
   convex::PenetrationScratch* scratch = nullptr;
   convex::PressureScratch* pressure = nullptr;
   std::size_t raise_next = 0;  ///< where in the front raising goes on
-  std::uint32_t ticks = 0;     ///< marks inner nodes that interpolation has been to
   std::uint64_t query_ns = 0;  ///< time of a query, smoothed; 0 without a clock
   bool short_of_room = false;  ///< the last exact query without a budget did not fit
 };

@@ -56,8 +56,6 @@ void split(Work& work, std::uint32_t index) noexcept {
   }
 }
 
-void stop(Work& work, std::uint32_t index) noexcept { work.stopped.add(work.tree[index], index); }
-
 /// The contact kept until now is none, or in an exact query none for sure only where the pieces are
 /// the original ones.
 void doubt(const Work& work, Node& node, bool refines) noexcept {
@@ -149,7 +147,7 @@ void measure_metric(Work& work, std::uint32_t index) noexcept {
     allow(node, missing.refine_a, missing.refine_b);
     wait_for_split(work, index);
   } else {
-    stop(work, index);
+    work.stopped.add(index);
   }
 }
 

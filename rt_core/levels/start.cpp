@@ -90,8 +90,8 @@ double near_children(const Work& work, const Node& parent) noexcept {
   return near;
 }
 
-/// How near the contact is that a node keeps, at its points by now, less the share of it that is
-/// not felt; delta where it keeps none.
+/// Delta less what is felt of the contact that a node keeps, at its points by now; delta where it
+/// keeps none.
 double kept_distance(const PairState& pair, const Node& node) noexcept {
   if (node.contact == 0) return pair.delta;
   const LeafContact contact = remeasured(pair, node);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes at which refinement stopped in this tick: what follows it need not look at the whole
-// front again.
+// The nodes of the front at which refinement stopped in this tick: near, and no detail that they
+// miss can be felt. What follows need not look at the whole front again.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
 #include "rt_core/base/assert.hpp"
-#include "rt_core/levels/test_tree.hpp"
 
 namespace palpate::levels {
 
@@ -16,13 +15,12 @@ class Stopped {
   /// @param storage  [nodes of the tree]: a node stops once a tick
   explicit Stopped(std::span<std::uint32_t> storage) noexcept : storage_(storage) {}
 
-  void add(Node& node, std::uint32_t index) noexcept {
+  void add(std::uint32_t index) noexcept {
     PALPATE_ASSERT(count_ < storage_.size());
-    set(node, kStopped);
     storage_[count_++] = index;
   }
 
-  /// In the order in which they stopped, those among them whose parent has taken their place since.
+  /// In the order in which they stopped.
   [[nodiscard]] std::span<const std::uint32_t> all() const noexcept {
     return storage_.first(count_);
   }

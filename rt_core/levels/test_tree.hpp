@@ -15,10 +15,9 @@ inline constexpr std::uint32_t kNone = image::kNone;
 
 /// Node::flags.
 inline constexpr std::uint8_t kMeasured = 1;  ///< this tick
-inline constexpr std::uint8_t kStopped = 2;  ///< this tick: near, and no detail missing can be felt
-inline constexpr std::uint8_t kRefineA = 4;  ///< this tick: near, and a is to be refined
+inline constexpr std::uint8_t kRefineA = 4;   ///< this tick: near, and a is to be refined
 inline constexpr std::uint8_t kRefineB = 8;
-inline constexpr std::uint8_t kOfThisTick = kMeasured | kStopped | kRefineA | kRefineB;
+inline constexpr std::uint8_t kOfThisTick = kMeasured | kRefineA | kRefineB;
 
 /// Node::contact.
 inline constexpr std::uint8_t kFound = 1;  ///< a query, perhaps of an ancestor, gave a contact

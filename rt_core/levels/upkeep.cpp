@@ -30,7 +30,8 @@ bool children_far(const Work& work, const Node& parent) noexcept {
   return true;
 }
 
-/// Where the parent gives no contact, nor does anything below it.
+/// Puts a parent in the place of its children where it gives no contact, nor does anything below
+/// it.
 void raise_far(Work& work, std::uint32_t parent) noexcept {
   Node& node = work.tree[parent];
   if (!children_far(work, node) || (work.is_near(node) && !work.proves_far(node))) return;
@@ -59,7 +60,6 @@ void tighten(Work& work) noexcept {
   if (work.rules.exact || work.rules.bounds == Bounds::paper) return;
   for (const std::uint32_t index : work.stopped.all()) {
     const Node& node = work.tree[index];
-    if (!work.tree.in_front(index)) continue;
     if (!work.probe.has_tighter(work.pair_of(node), node)) continue;
     const double certified_m = work.certified_m(node);
     work.waiting.push({certified_m, certified_m, index, false});

@@ -7,8 +7,7 @@
 namespace palpate::levels {
 
 /// A parent all of whose children are far takes their place, so that the front does not grow for
-/// ever. Looks at a part of the front a tick, in
-/// turn, and spends a share of the tick's queries.
+/// ever. Looks at a part of the front a tick, in turn, and spends a share of the tick's queries.
 void raise(Work& work) noexcept;
 
 /// The least lower bound of a stopped node sets the certificate, and the culling hulls may prove

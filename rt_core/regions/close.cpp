@@ -20,12 +20,13 @@ constexpr double kTicksAhead = 8;
 /// Nor than so many delta: fast bodies do not go straight for long.
 constexpr double kFarthestAhead = 0.2;
 
-// Bodies that touch slide along each other farther than they move apart or together, and a step is
-// much like the one before. A proof for one place would be worth the less the farther a region
-// goes, whichever way; one for all places on its way lasts while the region keeps to it, and what
-// the region only passes by does not count (swept volumes; Redon, Kheddar and Coquillart 2002 bound
-// boxes so between two poses, to find a first contact).
 /// A course that a region is about to go.
+///
+/// Bodies that touch slide along each other farther than they move apart or together, and a step is
+/// much like the one before. A proof for one place would be worth the less the farther a region
+/// goes, whichever way; one for all places on its way lasts while the region keeps to it, and what
+/// the region only passes by does not count (swept volumes; Redon, Kheddar and Coquillart 2002
+/// bound boxes so between two poses, to find a first contact).
 struct Course {
   Vec3d way{};     ///< of its centre, in the coordinates of b, from the present place
   float away = 0;  ///< how far that takes the region from its witness, in units
@@ -36,10 +37,10 @@ Vec3d way_of_witness(const Work& work, const Active& item) noexcept {
   return item.way.is_of(work.witness_of(item)) ? vec_cast<double>(item.way.along) : Vec3d{};
 }
 
-/// For the ticks to come; O(1). None where bodies are too fast, stand still, or
+/// The course of a region for the ticks to come. None where bodies are too fast, stand still or
 /// have just jumped, or where nothing that is kept of the region would last. What brings a region
 /// nearer to its witness is left out: while that comes nearer no less than anything else, the
-/// interval between them grows no wider.
+/// interval between them grows no wider. O(1)
 Course course_ahead(const Work& work, const Active& item) noexcept {
   const levels::PairState& pair = work.pair_of(item);
   if (!(margin_of(pair) > 0) || work.keeps_nothing(item)) return {};

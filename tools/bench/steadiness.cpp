@@ -7,10 +7,9 @@
 //
 // A row (CSV) for each motion, speed, setting and budget: the largest change of force between two
 // ticks over that of the same engine's exact query on the same motion, of the engine as it is and
-// steadied as `palpate run` does; how many
-// ticks change it by more than four fifths of the exact query's largest change; and the error of
-// the force against the exact one (NRMSE of the peak). Virtual time and work units: the same
-// figures on every machine.
+// steadied as `palpate run` does; how many ticks change it by more than four fifths of the exact
+// query's largest change; and the error of the force against the exact one (NRMSE of the peak).
+// Virtual time and work units: the same figures on every machine.
 //
 // Motions: `ground`, jaws of 6000 triangles ground on each other; `rolled`, an ellipsoid that rolls
 // over a golf ball of 20,000 triangles, 0.4 delta above it.
