@@ -35,8 +35,8 @@ std::string range(double min, double max) { return to_text(min) + " to " + to_te
 }  // namespace
 
 void refuse(const std::string& what, const std::string& file, const toml::source_region& at,
-            const std::string& mend) {
-  throw ConfigError(what + ": " + file + ":" + std::to_string(at.begin.line) + ": " + mend);
+            const std::string& fix) {
+  throw ConfigError(what + ": " + file + ":" + std::to_string(at.begin.line) + ": " + fix);
 }
 
 std::string known_names(std::string_view wrong, const std::vector<std::string_view>& names) {

@@ -14,9 +14,9 @@
 
 namespace palpate::config {
 
-/// Throws ConfigError `what: file:line: mend`.
+/// Throws ConfigError `what: file:line: fix`.
 [[noreturn]] void refuse(const std::string& what, const std::string& file,
-                         const toml::source_region& at, const std::string& mend);
+                         const toml::source_region& at, const std::string& fix);
 
 /// `did you mean 'delta_m'? use one of delta_m, s0`; the question only where a known name is near.
 std::string known_names(std::string_view wrong, const std::vector<std::string_view>& names);

@@ -192,7 +192,7 @@ Scene load_scene(const std::filesystem::path& file) {
     root = toml::parse(text);
   } catch (const toml::parse_error& e) {
     refuse("not TOML (" + one_line(e.description()) + ")", file.string(), e.source(),
-           "mend the line");
+           "fix the line");
   }
   return Loader(file, root).load();
 }

@@ -15,7 +15,7 @@
 
 namespace palpate::config {
 
-/// A scene file is refused. The message reads `WHAT: FILE:LINE: HOW TO MEND`; the command line
+/// A scene file is refused. The message reads `WHAT: FILE:LINE: HOW TO FIX`; the command line
 /// exits with 2.
 struct ConfigError : std::runtime_error {
   using std::runtime_error::runtime_error;

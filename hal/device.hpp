@@ -79,11 +79,11 @@ struct Capabilities {
   [[nodiscard]] bool renders_torque() const noexcept { return rendered_dof > 3; }
 };
 
-/// Why a device could not be used: in which phase, the likely cause, and the mend.
+/// Why a device could not be used: in which phase, the likely cause, and the fix.
 struct DeviceProblem {
   std::string phase;
   std::string cause;
-  std::string mend;
+  std::string fix;
 };
 
 class Device {

@@ -34,7 +34,7 @@ class Stylus final : public hal::Device {
     return {.max_force_N = 5, .rate_Hz = 2000, .sensed_dof = 3, .rendered_dof = 3};
   }
   std::optional<hal::DeviceProblem> open() override {
-    // A driver says here what is missing, and how to mend it:
+    // A driver says here what is missing, and how to fix it:
     // return hal::DeviceProblem{"open", "no such serial port", "plug it in"};
     return std::nullopt;
   }

@@ -41,7 +41,7 @@ hal::mock::HandParameters hand() {
 
 int fail(const hal::DeviceProblem& problem) {
   std::fprintf(stderr, "device failed at %s: %s: %s\n", problem.phase.c_str(),
-               problem.cause.c_str(), problem.mend.c_str());
+               problem.cause.c_str(), problem.fix.c_str());
   return 4;
 }
 

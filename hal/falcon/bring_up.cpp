@@ -134,7 +134,7 @@ Step load(FtdiLine& line, std::span<const std::byte> firmware) {
   return probe(line, Phase::run);
 }
 
-std::string mend_of(Phase phase) {
+std::string fix_of(Phase phase) {
   constexpr const char* kReplug = "plug the device in again; if it stays, try another USB port";
   constexpr const char* kRestart =
       "unplug its power and its USB cable, wait, plug both in, and try without a hub";
@@ -150,7 +150,7 @@ std::string mend_of(Phase phase) {
 DeviceProblem problem_of(const Failure& failure, int attempts) {
   std::string cause = failure.lost ? "the device is gone" : failure.cause;
   if (attempts > 1) cause += " (" + std::to_string(attempts) + " attempts)";
-  return {std::string(name(failure.phase)), cause, mend_of(failure.phase)};
+  return {std::string(name(failure.phase)), cause, fix_of(failure.phase)};
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace palpate::hal::usb {
 namespace {
 
-constexpr const char* kRuleMend =
+constexpr const char* kRuleFix =
     "'sudo tools/setup/host' installs the udev rule; then plug it in again";
 
 struct Candidate {
@@ -33,7 +33,7 @@ std::optional<Candidate> candidate_of(Kind kind, libusb_device* device) {
 DeviceProblem problem_of(int error) {
   switch (error) {
     case LIBUSB_ERROR_ACCESS:
-      return {"open", "no permission to use the device", kRuleMend};
+      return {"open", "no permission to use the device", kRuleFix};
     case LIBUSB_ERROR_BUSY:
       return {"claim", "another program uses the device", "end that program"};
     case LIBUSB_ERROR_NO_DEVICE:
@@ -96,7 +96,7 @@ FoundDevice describe(Kind kind, const Context& context, const Candidate& candida
   found.ready = !problem;
   if (problem) {
     found.problem = problem->phase + ": " + problem->cause;
-    found.mend = problem->mend;
+    found.fix = problem->fix;
   }
   return found;
 }

@@ -29,7 +29,7 @@ struct FoundDevice {
   std::string path;    ///< "2-1.4", as in /sys/bus/usb/devices
   bool ready = false;
   std::string problem;  ///< "phase: likely cause"; empty where ready
-  std::string mend;     ///< likewise
+  std::string fix;      ///< likewise
 };
 
 /// Every device with an interface for the exchange, by path. Opens and closes each. May block.

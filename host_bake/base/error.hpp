@@ -9,11 +9,11 @@
 
 namespace palpate::bake {
 
-/// An input is refused. The message reads `WHAT: WHERE: HOW TO MEND`; the command line prints it
+/// An input is refused. The message reads `WHAT: WHERE: HOW TO FIX`; the command line prints it
 /// after `palpate: error: ` and exits with 3.
 struct InputRefused : std::runtime_error {
-  InputRefused(const std::string& what, const std::string& where, const std::string& mend)
-      : std::runtime_error(what + ": " + where + ": " + mend) {}
+  InputRefused(const std::string& what, const std::string& where, const std::string& fix)
+      : std::runtime_error(what + ": " + where + ": " + fix) {}
 };
 
 /// Called now and then with the stage's name and its share done in [0, 1]; from one thread at a

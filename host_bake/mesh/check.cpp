@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kShown = 5;  ///< places a finding names
 constexpr double kTiny = 1e-3;     ///< radius of a component over that of the mesh
 
-const char* const kByRepair = "palpate's --repair mends it";
+const char* const kByRepair = "palpate's --repair fixes it";
 
 /// Places of one rule, as they are found.
 struct Places {
@@ -30,9 +30,9 @@ struct Places {
 };
 
 void report_places(CheckReport& report, const char* rule, Severity severity, const Places& places,
-                   const char* mend) {
+                   const char* fix) {
   if (places.count == 0) return;
-  report.findings.push_back({rule, severity, places.count, places.first, mend});
+  report.findings.push_back({rule, severity, places.count, places.first, fix});
 }
 
 Point middle(const Point& a, const Point& b) {
@@ -259,13 +259,13 @@ std::string describe(const Finding& finding) {
 void require_bakeable(const CheckReport& report, const std::string& file, bool strict) {
   for (const Finding& finding : report.findings) {
     if (finding.severity == Severity::note) continue;
-    throw InputRefused(describe(finding), file, finding.mend);
+    throw InputRefused(describe(finding), file, finding.fix);
   }
   if (strict && report.crossings > 0) {
     const auto crossing =
         std::find_if(report.findings.begin(), report.findings.end(),
                      [](const Finding& f) { return f.rule == "self-intersection"; });
-    throw InputRefused(describe(*crossing), file, "mend the mesh, or bake without --strict");
+    throw InputRefused(describe(*crossing), file, "fix the mesh, or bake without --strict");
   }
 }
 

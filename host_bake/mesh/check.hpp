@@ -13,7 +13,7 @@ namespace palpate::bake {
 
 enum class Severity {
   note,        ///< said, baked as it is: self-crossing faces, open boundaries, tiny components
-  repairable,  ///< refused as it is; repair() mends it
+  repairable,  ///< refused as it is; repair() fixes it
   error,       ///< refused, and no safe repair is known
 };
 
@@ -23,7 +23,7 @@ struct Finding {
   Severity severity = Severity::note;
   std::size_t count = 0;     ///< places
   std::vector<Point> first;  ///< the first few of them, metres
-  std::string mend;          ///< what to do about it
+  std::string fix;           ///< what to do about it
   double largest_gap_m = 0;  ///< of "corners nearly coincide"
 };
 
@@ -68,7 +68,7 @@ struct RepairReport {
   std::vector<std::string> done;  ///< one line an action: "3 duplicate faces removed"
 };
 
-/// Mends what a safe repair can, in this order: degenerate faces and all but the first of duplicate
+/// Fixes what a safe repair can, in this order: degenerate faces and all but the first of duplicate
 /// faces are removed; faces are turned to agree with their neighbours (the majority of each patch
 /// stays); each fan of faces round a vertex gets its own copy of it, so that at non-manifold edges
 /// and vertices, and along the seam of a one-sided surface, the sheets that touch come apart

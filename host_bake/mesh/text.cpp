@@ -106,8 +106,8 @@ std::int64_t Text::integer(std::string_view word, std::string_view what) const {
   return value;
 }
 
-void Text::refuse(const std::string& what, const std::string& mend) const {
-  throw InputRefused(what, file_ + ":" + std::to_string(line_), mend);
+void Text::refuse(const std::string& what, const std::string& fix) const {
+  throw InputRefused(what, file_ + ":" + std::to_string(line_), fix);
 }
 
 std::string quoted(std::string_view word) {

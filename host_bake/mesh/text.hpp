@@ -38,7 +38,7 @@ class Text {
   [[nodiscard]] std::int64_t integer(std::string_view word, std::string_view what) const;
 
   /// Throws InputRefused at `file:line`.
-  [[noreturn]] void refuse(const std::string& what, const std::string& mend) const;
+  [[noreturn]] void refuse(const std::string& what, const std::string& fix) const;
 
  private:
   void skip_blanks();

@@ -32,7 +32,7 @@ const std::vector<AlignedBytes>& sound_images() {
   return images;
 }
 
-void mend_envelope(AlignedBytes& bytes) {
+void fix_envelope(AlignedBytes& bytes) {
   if (bytes.size() < sizeof(image::Header)) return;
   image::Header header;
   std::memcpy(&header, bytes.data(), sizeof(header));
@@ -87,7 +87,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   AlignedBytes bytes(size);
   if (size > 0) std::memcpy(bytes.data(), data, size);
   check(bytes);
-  mend_envelope(bytes);
+  fix_envelope(bytes);
   check(bytes);
   return 0;
 }

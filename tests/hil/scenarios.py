@@ -37,8 +37,8 @@ def judge_doctor(log, verdict, real):
     if not real:
         verdict.silently("USB threads are complained about", before.get("usb_threads", {}).get("ok"), False)
         verdict.silently("exit status then", log.status("before"), 1)
-    verdict.silently("to be mended", [name for name, check in after.items() if not check["ok"]], [])
-    verdict.equal("exit status when all is mended" if not real else "exit status", log.status("after"), 0)
+    verdict.silently("to be fixed", [name for name, check in after.items() if not check["ok"]], [])
+    verdict.equal("exit status when all is fixed" if not real else "exit status", log.status("after"), 0)
     verdict.tell(f"{sum(c['ok'] for c in after.values())} of {len(after)} checks fine")
     verdict.tell(f"USB threads: {after.get('usb_threads', {}).get('found')}")
     cyclictest = log.number("cyclictest_us")

@@ -90,9 +90,9 @@ TEST(BakeCommand, Repair_is_asked_for_and_told) {
   const std::string mesh = folder.write("d.off", kDoubled), image = folder.path() / "d.palp";
   expect_refused(bake({mesh, "-o", image}), 3, "duplicate face");
   EXPECT_FALSE(std::filesystem::exists(image));
-  const test::Outcome mended = bake({mesh, "-o", image, "--repair"});
-  EXPECT_EQ(mended.status, 0) << mended.err;
-  EXPECT_NE(mended.out.find("repair: "), std::string::npos) << mended.out;
+  const test::Outcome fixed = bake({mesh, "-o", image, "--repair"});
+  EXPECT_EQ(fixed.status, 0) << fixed.err;
+  EXPECT_NE(fixed.out.find("repair: "), std::string::npos) << fixed.out;
 }
 
 TEST(BakeCommand, Detail_is_left_out_where_asked_and_told) {

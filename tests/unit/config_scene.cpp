@@ -41,11 +41,11 @@ class ConfigScene : public ::testing::Test {
   }
 
   void expect_refusal(const std::string& text, const std::string& what, const std::string& place,
-                      const std::string& mend) {
+                      const std::string& fix) {
     const std::string message = refusal(text);
     EXPECT_EQ(message.find(what), 0u) << message;
     EXPECT_NE(message.find(": " + place + ": "), std::string::npos) << message;
-    EXPECT_NE(message.find(mend, message.find(place)), std::string::npos) << message;
+    EXPECT_NE(message.find(fix, message.find(place)), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
 
@@ -347,9 +347,9 @@ TEST_F(ConfigScene, Path_mistakes_are_refused) {
 }
 
 TEST_F(ConfigScene, Text_that_is_not_toml_is_refused_with_line) {
-  expect_refusal(kBodies + "position = [0.0, \n\n", "not TOML (", "scene.toml:10", "mend");
-  expect_refusal("[engine]\ns0 = 1\ns0 = 2\n" + kBodies, "not TOML (", "scene.toml:3", "mend");
-  expect_refusal(std::string("\xff\xfe\x00", 3), "not TOML (", "scene.toml:1", "mend");
+  expect_refusal(kBodies + "position = [0.0, \n\n", "not TOML (", "scene.toml:10", "fix");
+  expect_refusal("[engine]\ns0 = 1\ns0 = 2\n" + kBodies, "not TOML (", "scene.toml:3", "fix");
+  expect_refusal(std::string("\xff\xfe\x00", 3), "not TOML (", "scene.toml:1", "fix");
 }
 
 TEST_F(ConfigScene, Unreadable_file_is_refused) {

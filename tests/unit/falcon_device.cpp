@@ -68,7 +68,7 @@ TEST(FalconBringUp, missing_firmware_is_named) {
   const auto problem = bring_up_of(model, 0);
   ASSERT_TRUE(problem);
   EXPECT_EQ(problem->phase, "probe");
-  EXPECT_NE(problem->mend.find("--firmware"), std::string::npos);
+  EXPECT_NE(problem->fix.find("--firmware"), std::string::npos);
 }
 
 TEST(FalconBringUp, file_that_can_be_no_firmware_is_not_uploaded) {

@@ -184,7 +184,7 @@ TEST(Check, Self_intersection_is_noted_and_refused_when_strict) {
   EXPECT_THROW(require_bakeable(report, "a.obj", true), InputRefused);
 }
 
-TEST(Check, Refusal_names_rule_count_places_and_mend) {
+TEST(Check, Refusal_names_rule_count_places_and_fix) {
   Mesh mesh = cube();
   mesh.faces.push_back({1, 1, 2});
   try {
@@ -193,7 +193,7 @@ TEST(Check, Refusal_names_rule_count_places_and_mend) {
   } catch (const InputRefused& refused) {
     EXPECT_STREQ(
         refused.what(),
-        "1 x degenerate face at (0.666667 0.333333 0): a.obj: palpate's --repair mends it");
+        "1 x degenerate face at (0.666667 0.333333 0): a.obj: palpate's --repair fixes it");
   }
 }
 

@@ -260,7 +260,7 @@ TEST(Read, Written_ply_keeps_equal_positions_apart) {
   EXPECT_TRUE(check(read).bakeable());
 }
 
-TEST(Read, Bad_files_are_refused_with_place_and_mend) {
+TEST(Read, Bad_files_are_refused_with_place_and_fix) {
   const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const std::string ply = to_ply_ascii(cube());
   const struct {

@@ -164,7 +164,7 @@ Mesh random_soup(std::mt19937& random, std::uint32_t vertices, std::size_t faces
 
 TEST(Repair, Random_soups_end_bakeable_or_say_what_is_left) {
   std::mt19937 random(11);
-  std::size_t mended = 0;
+  std::size_t fixed = 0;
   for (int round = 0; round < 300; ++round) {
     Mesh mesh = random_soup(random, 12, 4 + static_cast<std::size_t>(round) / 10);
     repair(mesh);
@@ -173,13 +173,13 @@ TEST(Repair, Random_soups_end_bakeable_or_say_what_is_left) {
       if (f.severity == Severity::note) continue;
       EXPECT_TRUE(f.rule == "non-manifold edge" || f.rule == "no triangles") << f.rule;
     }
-    mended += report.bakeable();
+    fixed += report.bakeable();
     Mesh again = mesh;
     if (report.bakeable()) {
       EXPECT_TRUE(repair(again).done.empty());
     }
   }
-  EXPECT_GT(mended, 250U);
+  EXPECT_GT(fixed, 250U);
 }
 
 }  // namespace

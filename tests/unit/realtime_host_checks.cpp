@@ -55,11 +55,11 @@ TEST_F(HostChecks, tuned_host_passes_every_check) {
   rights.max_locked_bytes = std::numeric_limits<std::uint64_t>::max();
   for (const HostCheck& c : check_host(rights, root)) {
     EXPECT_TRUE(c.ok) << c.check << ": " << c.found;
-    EXPECT_TRUE(c.mend.empty()) << c.check;
+    EXPECT_TRUE(c.fix.empty()) << c.check;
   }
 }
 
-TEST_F(HostChecks, ordinary_host_is_told_what_to_mend) {
+TEST_F(HostChecks, ordinary_host_is_told_what_to_fix) {
   put("proc/version", "Linux version 6.1.0 (x) #1 SMP PREEMPT_DYNAMIC Debian");
   put("proc/sys/kernel/sched_rt_runtime_us", "500000");
   put("sys/devices/system/clocksource/clocksource0/current_clocksource", "hpet");
@@ -72,26 +72,26 @@ TEST_F(HostChecks, ordinary_host_is_told_what_to_mend) {
   for (const HostCheck& c : check_host(rights, root)) {
     if (c.ok) continue;
     failed.insert(c.check);
-    EXPECT_FALSE(c.mend.empty()) << c.check;
+    EXPECT_FALSE(c.fix.empty()) << c.check;
     EXPECT_FALSE(c.found.empty()) << c.check;
     EXPECT_FALSE(c.wanted.empty()) << c.check;
   }
   EXPECT_EQ(failed, (std::set<std::string>{"kernel_preemption", "rtprio_limit", "memlock_limit",
                                            "realtime_throttling", "clock_source", "isolated_cpus",
                                            "frequency_scaling", "usb_autosuspend", "udev_rule"}));
-  // One command mends what is not of the kernel.
+  // One command fixes what is not of the kernel.
   for (const char* check :
        {"rtprio_limit", "memlock_limit", "frequency_scaling", "usb_autosuspend", "udev_rule"}) {
-    EXPECT_EQ(find(check).mend.rfind("sudo tools/setup/host", 0), 0u) << check;
+    EXPECT_EQ(find(check).fix.rfind("sudo tools/setup/host", 0), 0u) << check;
   }
   EXPECT_EQ(find("kernel_preemption").found, "PREEMPT_DYNAMIC");
 }
 
 TEST_F(HostChecks, installed_copy_names_the_script_that_lies_with_it) {
   for (const HostCheck& c : check_host({}, root, "/opt/share/palpate/tools/setup/host")) {
-    EXPECT_EQ(c.mend.find("sudo tools/"), std::string::npos) << c.check;
+    EXPECT_EQ(c.fix.find("sudo tools/"), std::string::npos) << c.check;
     if (c.check == "udev_rule") {
-      EXPECT_EQ(c.mend, "sudo /opt/share/palpate/tools/setup/host");
+      EXPECT_EQ(c.fix, "sudo /opt/share/palpate/tools/setup/host");
     }
   }
 }

@@ -73,7 +73,7 @@ TEST_F(ProcessorChecks, host_with_one_processor_is_not_told_to_isolate_it) {
 TEST_F(ProcessorChecks, last_processor_is_advised_for_the_loop) {
   put("sys/devices/system/cpu/online", "0-3");
   put("sys/devices/system/cpu/isolated", "");
-  EXPECT_EQ(find("isolated_cpus").mend,
+  EXPECT_EQ(find("isolated_cpus").fix,
             "boot with the kernel parameters: isolcpus=3 nohz_full=3 rcu_nocbs=3 irqaffinity=0-2, "
             "then palpate run --cpu 3");
 }
@@ -85,7 +85,7 @@ TEST_F(ProcessorChecks, isolated_processor_with_ticks_callbacks_or_interrupts_is
   EXPECT_TRUE(find("isolated_cpus").ok);
   for (const char* check : {"tickless_cpus", "rcu_callbacks", "interrupts"}) {
     EXPECT_FALSE(find(check).ok) << check;
-    EXPECT_NE(find(check).mend.find("=2 "), std::string::npos) << find(check).mend;
+    EXPECT_NE(find(check).fix.find("=2 "), std::string::npos) << find(check).fix;
   }
   put("sys/devices/system/cpu/nohz_full", "2");
   put("proc/irq/default_smp_affinity", "b");
@@ -121,9 +121,9 @@ TEST_F(UsbChecks, threads_that_serve_usb_must_be_above_the_loop) {
   EXPECT_FALSE(check.ok);
   EXPECT_NE(check.found.find("irq/127-xhci_hc at priority 50"), std::string::npos) << check.found;
   EXPECT_NE(check.found.find("vhci_rx at SCHED_OTHER"), std::string::npos) << check.found;
-  EXPECT_NE(check.mend.find("sudo chrt -f -p 86 101"), std::string::npos) << check.mend;
-  EXPECT_NE(check.mend.find("sudo chrt -f -p 86 102"), std::string::npos) << check.mend;
-  EXPECT_EQ(check.mend.find(" 103"), std::string::npos) << check.mend;
+  EXPECT_NE(check.fix.find("sudo chrt -f -p 86 101"), std::string::npos) << check.fix;
+  EXPECT_NE(check.fix.find("sudo chrt -f -p 86 102"), std::string::npos) << check.fix;
+  EXPECT_EQ(check.fix.find(" 103"), std::string::npos) << check.fix;
   put_thread(101, "irq/127-xhci_hc", 86, 1);
   put_thread(102, "vhci_rx", 86, 1);
   EXPECT_TRUE(find("usb_threads").ok);
@@ -132,7 +132,7 @@ TEST_F(UsbChecks, threads_that_serve_usb_must_be_above_the_loop) {
 TEST_F(UsbChecks, threads_of_timers_serve_a_controller_that_is_emulated_by_them) {
   put("sys/module/dummy_hcd/refcnt", "1");
   put_thread(8, "ktimers/0", 1, 1);
-  EXPECT_EQ(find("usb_threads").mend, "sudo chrt -f -p 86 8");
+  EXPECT_EQ(find("usb_threads").fix, "sudo chrt -f -p 86 8");
   put_thread(8, "ktimers/0", 86, 1);
   EXPECT_TRUE(find("usb_threads").ok);
 }
@@ -146,7 +146,7 @@ TEST_F(UsbChecks, interrupt_on_the_loops_processor_is_named) {
       "  35:          0       1234  IR-PCI-MSI  ahci[0000:00:17.0]");
   put("proc/irq/34/effective_affinity_list", "1");
   put("proc/irq/35/effective_affinity_list", "1");
-  EXPECT_EQ(find("usb_interrupts").mend, "echo 0 | sudo tee /proc/irq/34/smp_affinity_list");
+  EXPECT_EQ(find("usb_interrupts").fix, "echo 0 | sudo tee /proc/irq/34/smp_affinity_list");
   put("proc/irq/34/effective_affinity_list", "0");
   EXPECT_TRUE(find("usb_interrupts").ok);
 }
@@ -157,7 +157,7 @@ TEST_F(UsbChecks, usb_that_could_be_loaded_and_usb_that_is_not_there_are_told_ap
   put("proc/sys/kernel/osrelease", "6.1.0-rt");
   put("lib/modules/6.1.0-rt/modules.dep", "kernel/drivers/usb/core/usbcore.ko: kernel/x.ko");
   EXPECT_FALSE(find("usb_core").ok);
-  EXPECT_NE(find("usb_core").mend.find("sudo modprobe"), std::string::npos);
+  EXPECT_NE(find("usb_core").fix.find("sudo modprobe"), std::string::npos);
   put("sys/module/usbcore/parameters/autosuspend", "-1");
   EXPECT_TRUE(find("usb_core").ok);
 }
@@ -206,8 +206,8 @@ TEST_F(UsbChecks, link_to_the_controller_that_may_sleep_is_named) {
   const HostCheck check = find("usb_bus_power");
   EXPECT_FALSE(check.ok);
   EXPECT_EQ(check.found, "links that may sleep: 0000:03:00.0 by l1_aspm");
-  EXPECT_EQ(check.mend.rfind("echo 0 | sudo tee /" + controller + "link/l1_aspm (", 0), 0u)
-      << check.mend;
+  EXPECT_EQ(check.fix.rfind("echo 0 | sudo tee /" + controller + "link/l1_aspm (", 0), 0u)
+      << check.fix;
 }
 
 }  // namespace

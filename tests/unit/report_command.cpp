@@ -67,7 +67,7 @@ TEST_F(Report, of_a_replay_is_one_page_that_holds_its_data_and_names_no_other_fi
   EXPECT_EQ(page.find("<link rel=\"stylesheet\""), std::string::npos);
 }
 
-TEST_F(Report, without_a_page_is_refused_with_the_mend) {
+TEST_F(Report, without_a_page_is_refused_with_the_fix) {
   const std::string alone = at("palpate");
   fs::copy_file(PALPATE_EXECUTABLE, alone);
   const test::Outcome outcome = report(folder_.path().string(), alone);

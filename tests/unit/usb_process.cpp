@@ -102,7 +102,7 @@ TEST_F(UsbProcess, device_is_listed_as_ready) {
   EXPECT_EQ(list[0]["state"], "ready");
 }
 
-TEST_F(UsbProcess, each_of_several_devices_says_what_is_wrong_with_it_and_the_mend) {
+TEST_F(UsbProcess, each_of_several_devices_says_what_is_wrong_with_it_and_the_fix) {
   plug_in({path("flash"), "denied", "busy", "version"});
   const json list = json::parse(palpate({"devices", "--json"}).out);
   ASSERT_EQ(list.size(), 4u);

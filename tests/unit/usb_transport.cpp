@@ -234,7 +234,7 @@ TEST(Libusb, unplugging_before_any_transfer_is_a_problem_or_a_loss_and_never_a_h
     rig.usbfs.unplug_after(submissions);
     if (const auto problem = rig.begin()) {
       EXPECT_FALSE(problem->phase.empty()) << submissions;
-      EXPECT_FALSE(problem->mend.empty()) << submissions;
+      EXPECT_FALSE(problem->fix.empty()) << submissions;
     } else {
       rig.run(3000 * kMs, [&] { return rig.has_faults(kDeviceLost); });
       EXPECT_TRUE(rig.has_faults(kDeviceLost)) << submissions;

@@ -185,7 +185,7 @@ void add_bake(CLI::App& app) {
       ->add_option("--unit-scale", options->unit_scale,
                    "Metres of one unit of the file; default: 1")
       ->check(number_between(1e-15, 1e15));
-  command->add_flag("--repair", options->rules.repair, "Mend what a safe repair can, see check");
+  command->add_flag("--repair", options->rules.repair, "Fix what a safe repair can, see check");
   command->add_flag("--strict", options->rules.strict,
                     "Refuse a mesh whose faces cross one another");
   command

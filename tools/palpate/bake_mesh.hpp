@@ -19,7 +19,7 @@ struct Baked {
 };
 
 struct BakeRules {
-  bool repair = false;  ///< what a safe repair can mend
+  bool repair = false;  ///< what a safe repair can fix
   bool strict = false;  ///< refuse a mesh whose faces cross one another
 };
 

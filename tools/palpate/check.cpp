@@ -46,7 +46,7 @@ void print(const bake::Mesh& mesh, const bake::Welded& welded, const bake::Check
   if (welded.corners > 0) std::cout << "  welded: " << describe(welded) << "\n";
   for (const bake::Finding& finding : report.findings) {
     std::cout << "  " << name_of(finding.severity) << ": " << bake::describe(finding) << "\n      "
-              << finding.mend << "\n";
+              << finding.fix << "\n";
   }
   std::cout << (report.bakeable() ? "  can be baked\n" : "  cannot be baked as it is\n");
 }
@@ -58,7 +58,7 @@ nlohmann::json to_json(const bake::CheckReport& report) {
                         {"severity", name_of(finding.severity)},
                         {"count", finding.count},
                         {"first_m", finding.first},
-                        {"mend", finding.mend}});
+                        {"mend", finding.fix}});
     if (finding.largest_gap_m > 0) findings.back()["largest_gap_m"] = finding.largest_gap_m;
   }
   return {{"bakeable", report.bakeable()},
@@ -80,7 +80,7 @@ nlohmann::json to_json(const bake::Welded& welded) {
 void print(const bake::RepairReport& repaired) {
   std::cout << "repair\n";
   for (const std::string& line : repaired.done) std::cout << "  " << line << "\n";
-  if (repaired.done.empty()) std::cout << "  nothing to mend\n";
+  if (repaired.done.empty()) std::cout << "  nothing to fix\n";
 }
 
 void check(const CheckOptions& options) {

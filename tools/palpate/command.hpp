@@ -25,11 +25,11 @@ enum Exit : int {
   kPromiseBroken = 5
 };
 
-/// Ends the command: one line `palpate: error: WHAT: WHERE: HOW TO MEND` on stderr, then this
+/// Ends the command: one line `palpate: error: WHAT: WHERE: HOW TO FIX` on stderr, then this
 /// status.
 struct Failure : std::runtime_error {
-  Failure(Exit code_, const std::string& what, const std::string& where, const std::string& mend)
-      : std::runtime_error(what + ": " + where + ": " + mend), code(code_) {}
+  Failure(Exit code_, const std::string& what, const std::string& where, const std::string& fix)
+      : std::runtime_error(what + ": " + where + ": " + fix), code(code_) {}
   Exit code;
 };
 

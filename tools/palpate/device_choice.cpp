@@ -81,7 +81,7 @@ CLI::Validator is_device() {
 
 void fail(const std::string& device, const hal::DeviceProblem& problem) {
   throw Failure(kDevice, "device failed at " + problem.phase + ", " + problem.cause, device,
-                problem.mend);
+                problem.fix);
 }
 
 std::unique_ptr<hal::Transport> open_usb(const std::string& device, hal::usb::Kind kind) {

@@ -20,13 +20,12 @@ void print(const hal::usb::FoundDevice& device) {
   std::cout << hal::usb::name(device.kind) << serial << "  on USB " << device.path << ", "
             << state_of(device) << "\n";
   if (device.ready) return;
-  std::cout << "    problem: " << device.problem << "\n    fix:     " << device.mend << "\n";
+  std::cout << "    problem: " << device.problem << "\n    fix:     " << device.fix << "\n";
 }
 
 nlohmann::json to_json(const hal::usb::FoundDevice& device) {
-  return {
-      {"kind", hal::usb::name(device.kind)}, {"serial", device.serial},   {"path", device.path},
-      {"state", state_of(device)},           {"problem", device.problem}, {"mend", device.mend}};
+  return {{"kind", hal::usb::name(device.kind)}, {"serial", device.serial},   {"path", device.path},
+          {"state", state_of(device)},           {"problem", device.problem}, {"mend", device.fix}};
 }
 
 void devices(bool json) {

@@ -14,7 +14,7 @@ namespace {
 void print(const realtime::HostCheck& check) {
   std::cout << (check.ok ? "ok    " : "fix   ") << check.check << ": " << check.found << "\n";
   if (check.ok) return;
-  std::cout << "        wanted: " << check.wanted << "\n        fix:    " << check.mend << "\n";
+  std::cout << "        wanted: " << check.wanted << "\n        fix:    " << check.fix << "\n";
 }
 
 nlohmann::json to_json(const realtime::HostCheck& check) {
@@ -22,7 +22,7 @@ nlohmann::json to_json(const realtime::HostCheck& check) {
           {"ok", check.ok},
           {"found", check.found},
           {"wanted", check.wanted},
-          {"mend", check.mend}};
+          {"mend", check.fix}};
 }
 
 void doctor(bool json) {

@@ -14,13 +14,13 @@ void print_error(const char* program, std::string message) {
 }
 
 std::string internal_error() {
-  const std::string mend = ": internal: please report it with the command line";
+  const std::string fix = ": internal: please report it with the command line";
   try {
     throw;
   } catch (const std::exception& e) {
-    return e.what() + mend;
+    return e.what() + fix;
   } catch (...) {
-    return "unknown failure" + mend;
+    return "unknown failure" + fix;
   }
 }
 

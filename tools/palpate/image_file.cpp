@@ -16,11 +16,11 @@ namespace {
 constexpr std::align_val_t kAlignment{image::kAlignment};
 
 [[noreturn]] void refuse(const std::string& what, const std::filesystem::path& file,
-                         const std::string& mend) {
-  throw Failure(kRefused, what, file.string(), mend);
+                         const std::string& fix) {
+  throw Failure(kRefused, what, file.string(), fix);
 }
 
-std::string mend_for(Status status) {
+std::string fix_for(Status status) {
   switch (status) {
     case Status::image_bad_magic:
     case Status::image_too_small:
@@ -60,7 +60,7 @@ ImageFile::ImageFile(const std::filesystem::path& file) : size_(size_of(file)) {
            "check its permissions and that nothing writes to it");
   }
   if (const Status status = validate(bytes(), view_); status != Status::ok) {
-    refuse(std::string("image refused, ") + describe(status), file, mend_for(status));
+    refuse(std::string("image refused, ") + describe(status), file, fix_for(status));
   }
 }
 

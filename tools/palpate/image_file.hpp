@@ -16,7 +16,7 @@ namespace palpate::cli {
 /// under a running loop would kill it.
 class ImageFile {
  public:
-  /// Reads the whole file. Throws Failure(kRefused), naming file, reason and mend: not readable,
+  /// Reads the whole file. Throws Failure(kRefused), naming file, reason and fix: not readable,
   /// not a regular file, or refused by validate().
   explicit ImageFile(const std::filesystem::path& file);
 

@@ -51,8 +51,8 @@ class Reader {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& what, const std::string& mend) const {
-    throw Failure(kRefused, what, file_ + ":" + std::to_string(line_), mend);
+  [[noreturn]] void refuse(const std::string& what, const std::string& fix) const {
+    throw Failure(kRefused, what, file_ + ":" + std::to_string(line_), fix);
   }
 
   void add(std::string_view row) {

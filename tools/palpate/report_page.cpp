@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPlace = "@PALPATE_REPORT@";
-constexpr const char* kMendPage =
+constexpr const char* kFixPage =
     "install node (Debian package nodejs) and build the target report_bundle, once with a network";
 
 /// JSON in which no "<" is left: "</script>" in a name would end the element.
@@ -38,7 +38,7 @@ fs::path page_file(const char* name) {
   for (const fs::path& page : {folder / name, folder / "../share/palpate" / name}) {
     if (fs::exists(page, error)) return page;
   }
-  throw Failure(kOther, "this build has no page to show", (folder / name).string(), kMendPage);
+  throw Failure(kOther, "this build has no page to show", (folder / name).string(), kFixPage);
 }
 
 }  // namespace
@@ -50,11 +50,11 @@ std::string fill_page(const fs::path& page, const nlohmann::ordered_json& data) 
   std::string text;
   if (const std::error_code error = config::read_text(page, text)) {
     throw Failure(kOther, "cannot read the page (" + error.message() + ")", page.string(),
-                  kMendPage);
+                  kFixPage);
   }
   const std::size_t place = text.find(kPlace);
   if (place == std::string::npos || text.find(kPlace, place + 1) != std::string::npos) {
-    throw Failure(kOther, "not a page of palpate", page.string(), kMendPage);
+    throw Failure(kOther, "not a page of palpate", page.string(), kFixPage);
   }
   return text.replace(place, kPlace.size(), for_html(data));
 }

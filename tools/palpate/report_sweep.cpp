@@ -13,13 +13,13 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kMendSweep = "give the sweep.json that 'palpate sweep' wrote";
+constexpr const char* kFixSweep = "give the sweep.json that 'palpate sweep' wrote";
 
 /// The figures of one setting by name; says where what is missing.
 class SettingRow {
  public:
   SettingRow(const json& row, std::string where) : row_(row), where_(std::move(where)) {
-    if (!row_.is_object()) throw Failure(kRefused, "a setting is no object", where_, kMendSweep);
+    if (!row_.is_object()) throw Failure(kRefused, "a setting is no object", where_, kFixSweep);
   }
 
   /// null is NaN.
@@ -42,7 +42,7 @@ class SettingRow {
   [[nodiscard]] const json& at(const char* key) const {
     const auto found = row_.find(key);
     if (found == row_.end()) {
-      throw Failure(kRefused, std::string("no '") + key + "'", where_, kMendSweep);
+      throw Failure(kRefused, std::string("no '") + key + "'", where_, kFixSweep);
     }
     return *found;
   }
@@ -50,7 +50,7 @@ class SettingRow {
 
  private:
   [[noreturn]] void refuse(const char* key, const char* wanted) const {
-    throw Failure(kRefused, std::string("'") + key + "' is not " + wanted, where_, kMendSweep);
+    throw Failure(kRefused, std::string("'") + key + "' is not " + wanted, where_, kFixSweep);
   }
 
   const json& row_;
@@ -110,11 +110,11 @@ std::vector<SweepPoint> read_sweep(const std::filesystem::path& file) {
   std::string text;
   if (const std::error_code error = config::read_text(file, text)) {
     throw Failure(kRefused, "cannot read the sweep (" + error.message() + ")", file.string(),
-                  kMendSweep);
+                  kFixSweep);
   }
   const json list = json::parse(text, nullptr, false);
   if (!list.is_array() || list.empty()) {
-    throw Failure(kRefused, "not a list of settings", file.string(), kMendSweep);
+    throw Failure(kRefused, "not a list of settings", file.string(), kFixSweep);
   }
   std::vector<SweepPoint> points;
   for (const json& row : list) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Is this host ready for the loop? One check a fact, each with the command that mends it.
+// Is this host ready for the loop? One check a fact, each with the command that fixes it.
 // docs/REALTIME.md explains them.
 #pragma once
 
@@ -15,7 +15,7 @@ struct HostCheck {
   bool ok = false;
   std::string found;
   std::string wanted;
-  std::string mend;  ///< a command or what to change; empty where ok
+  std::string fix;  ///< a command or what to change; empty where ok
 };
 
 /// What the kernel permits this process.

@@ -28,8 +28,8 @@ inline constexpr int kLoopPriority = 80;
 void append(std::string& list, const char* between, const std::string& text);
 
 [[nodiscard]] inline HostCheck make_check(std::string name, bool ok, std::string found,
-                                          std::string wanted, std::string mend) {
-  return {std::move(name), ok, std::move(found), std::move(wanted), ok ? "" : std::move(mend)};
+                                          std::string wanted, std::string fix) {
+  return {std::move(name), ok, std::move(found), std::move(wanted), ok ? "" : std::move(fix)};
 }
 
 }  // namespace palpate::realtime

@@ -21,7 +21,7 @@ class HostMemory {
 
   [[nodiscard]] bool locked() const noexcept { return locked_; }
 
-  /// Why memory is not locked, and the mend; empty where it is.
+  /// Why memory is not locked, and the fix; empty where it is.
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
  private:

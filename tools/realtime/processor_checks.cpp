@@ -50,19 +50,19 @@ HostCheck isolated_cpus(const fs::path& root, const std::set<int>& online) {
 }
 
 HostCheck tickless_cpus(const fs::path& root, const std::set<int>& isolated,
-                        const std::string& mend) {
+                        const std::string& fix) {
   const std::string found = first_line(root / kCpus / "nohz_full").value_or("");
   const std::set<int> tickless = processors_in(found);
   return make_check("tickless_cpus", includes(tickless, isolated),
                     isolated.empty()   ? kNone
                     : tickless.empty() ? "none"
                                        : found,
-                    "no periodic tick on an isolated processor (nohz_full)", mend);
+                    "no periodic tick on an isolated processor (nohz_full)", fix);
 }
 
 /// Processors without a tick have their callbacks moved too.
 HostCheck rcu_callbacks(const fs::path& root, const std::set<int>& isolated,
-                        const std::string& mend) {
+                        const std::string& fix) {
   const std::string found = boot_parameter(root, "rcu_nocbs");
   std::set<int> spared = processors_in(found);
   spared.merge(processors_in(first_line(root / kCpus / "nohz_full").value_or("")));
@@ -71,11 +71,11 @@ HostCheck rcu_callbacks(const fs::path& root, const std::set<int>& isolated,
                     : found.empty()  ? "nowhere moved by rcu_nocbs"
                                      : "moved away from " + found,
                     "callbacks of the kernel elsewhere than on an isolated processor (rcu_nocbs)",
-                    mend);
+                    fix);
 }
 
 HostCheck default_interrupts(const fs::path& root, const std::set<int>& isolated,
-                             const std::string& mend) {
+                             const std::string& fix) {
   const std::string found = first_line(root / "proc/irq/default_smp_affinity").value_or("");
   const std::set<int> served = processors_in_mask(found);
   const bool apart = std::none_of(isolated.begin(), isolated.end(),
@@ -84,7 +84,7 @@ HostCheck default_interrupts(const fs::path& root, const std::set<int>& isolated
                     isolated.empty() ? kNone
                     : found.empty()  ? "unknown"
                                      : "mask " + found,
-                    "interrupts elsewhere than on an isolated processor (irqaffinity)", mend);
+                    "interrupts elsewhere than on an isolated processor (irqaffinity)", fix);
 }
 
 /// Two processors of one core share its units and caches.
@@ -113,9 +113,9 @@ std::set<int> isolated_processors(const fs::path& root) {
 std::vector<HostCheck> processor_checks(const fs::path& root) {
   const std::set<int> online = processors_in(first_line(root / kCpus / "online").value_or(""));
   const std::set<int> isolated = isolated_processors(root);
-  const std::string mend = boot_advice(isolated.empty() ? online : isolated);
-  return {isolated_cpus(root, online), tickless_cpus(root, isolated, mend),
-          rcu_callbacks(root, isolated, mend), default_interrupts(root, isolated, mend),
+  const std::string fix = boot_advice(isolated.empty() ? online : isolated);
+  return {isolated_cpus(root, online), tickless_cpus(root, isolated, fix),
+          rcu_callbacks(root, isolated, fix), default_interrupts(root, isolated, fix),
           hyper_threads(root, isolated)};
 }
 

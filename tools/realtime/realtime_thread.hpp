@@ -28,7 +28,7 @@ struct RealtimeOptions {
 struct HostGrant {
   std::string scheduler = "SCHED_OTHER";  ///< of the thread, with its priority: "SCHED_FIFO 80"
   bool memory_locked = false;  ///< every page of the process is locked; else they were only touched
-  std::vector<std::string> notes;  ///< what was not granted, why, and the mend; one line each
+  std::vector<std::string> notes;  ///< what was not granted, why, and the fix; one line each
 };
 
 /// Runs a body once, on a thread of its own whose stack is touched, with all memory that the

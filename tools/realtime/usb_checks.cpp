@@ -79,7 +79,7 @@ bool serves_usb(const std::string& name, bool by_timers) {
 
 HostCheck usb_threads(const fs::path& root) {
   const bool by_timers = fs::exists(root / "sys/module/dummy_hcd");
-  std::string found, mend;
+  std::string found, fix;
   bool ok = true;
   std::error_code unreadable;
   for (const auto& entry : fs::directory_iterator(root / "proc", unreadable)) {
@@ -93,18 +93,18 @@ HostCheck usb_threads(const fs::path& root) {
             (thread.policy == 0 ? "SCHED_OTHER" : "priority " + std::to_string(thread.priority)));
     if (thread.above_the_loop()) continue;
     ok = false;
-    append(mend, " && ", "sudo chrt -f -p 86 " + pid);
+    append(fix, " && ", "sudo chrt -f -p 86 " + pid);
   }
   return make_check("usb_threads", ok,
                     found.empty() ? "none: this kernel serves USB in interrupts" : found,
                     "threads that serve USB at SCHED_FIFO above the loop, which takes " +
                         std::to_string(kLoopPriority),
-                    mend);
+                    fix);
 }
 
 HostCheck usb_interrupts(const fs::path& root) {
   const std::set<int> isolated = isolated_processors(root);
-  std::string found, mend;
+  std::string found, fix;
   bool ok = true;
   std::ifstream interrupts(root / "proc/interrupts");
   for (std::string line; std::getline(interrupts, line);) {
@@ -123,11 +123,11 @@ HostCheck usb_interrupts(const fs::path& root) {
                                     [&](int cpu) { return isolated.count(cpu) > 0; });
     if (apart) continue;
     ok = false;
-    append(mend, " && ", "echo 0 | sudo tee /proc/irq/" + number + "/smp_affinity_list");
+    append(fix, " && ", "echo 0 | sudo tee /proc/irq/" + number + "/smp_affinity_list");
   }
   return make_check("usb_interrupts", ok,
                     found.empty() ? "none" : "interrupts and processors: " + found,
-                    "of the USB controller, elsewhere than on the loop's processor", mend);
+                    "of the USB controller, elsewhere than on the loop's processor", fix);
 }
 
 HostCheck udev_rule(const fs::path& root, const std::string& set_up) {

@@ -114,7 +114,7 @@ HostCheck usb_port(const fs::path& root) {
 /// Links of PCI Express to USB controllers take microseconds to wake up.
 HostCheck usb_bus_power(const fs::path& root) {
   constexpr const char* kUsbController = "0x0c03";
-  std::string found, mend;
+  std::string found, fix;
   std::error_code unreadable;
   for (const auto& device : fs::directory_iterator(root / "sys/bus/pci/devices", unreadable)) {
     if (first_line(device.path() / "class").value_or("").rfind(kUsbController, 0) != 0) continue;
@@ -122,7 +122,7 @@ HostCheck usb_bus_power(const fs::path& root) {
       if (first_line(state.path()) != "1") continue;
       append(found, ", ",
              device.path().filename().string() + " by " + state.path().filename().string());
-      append(mend, " && ",
+      append(fix, " && ",
              "echo 0 | sudo tee " + ("/" / state.path().lexically_relative(root)).string());
     }
   }
@@ -130,7 +130,7 @@ HostCheck usb_bus_power(const fs::path& root) {
       "usb_bus_power", found.empty(),
       found.empty() ? "no link to a USB controller may sleep" : "links that may sleep: " + found,
       "no power management of the link to the USB controller",
-      mend +
+      fix +
           " (until the next start; for good in the firmware's set-up, or by the "
           "kernel parameter pcie_aspm=off)");
 }

@@ -65,7 +65,7 @@ measure_beside_hogs() {
 
 sudo() { "$@"; }
 # Does all that doctor says.
-mend() { cd "$project" && eval "$(palpate doctor | sed -n 's/^ *fix: *//p')" >"$scratch/mended"; cd - >/dev/null; }
+fix() { cd "$project" && eval "$(palpate doctor | sed -n 's/^ *fix: *//p')" >"$scratch/fixed"; cd - >/dev/null; }
 # Does what doctor says about the threads that serve USB.
 raise_threads() { eval "$(palpate doctor | sed -n '/^fix   usb_threads/,/fix:/s/.*fix: *//p')"; }
 
