@@ -43,6 +43,19 @@ bool is_over(const image::RegionTriangle& t, Vec3f normal, Vec3f x) noexcept {
          dot(cross(a - c, x - c), normal) >= 0;
 }
 
+/// The foot of a point on a triangle or, where that lies on an edge, on the neighbour beyond it if
+/// that is nearer: a cell of the grid may be over several wide triangles, and names one of them.
+contact::Foot nearby_foot(const contact::Surface& surface, std::uint32_t triangle,
+                          Vec3d x) noexcept {
+  const contact::Foot foot = contact::closest_point(surface, triangle, x);
+  if (!contact::is_edge(foot.feature)) return foot;
+  const image::RegionTriangle& at = surface.image->region_triangles[triangle];
+  const std::uint32_t beyond = at.neighbours[contact::which(foot.feature)];
+  if (beyond == image::kNone) return foot;
+  const contact::Foot next = contact::closest_point(surface, beyond, x);
+  return next.squared < foot.squared ? next : foot;
+}
+
 /// How much the faces about a vertex face a direction, the nearest of them or their mean.
 float facing_cosine(const ImageView& image, const image::SurfaceVertex& v,
                     Vec3f direction) noexcept {
@@ -141,7 +154,7 @@ LikelyContacts::Found LikelyContacts::look_at(std::uint32_t vertex,
   const bool behind = place.distance < 0 && contact::is_open(target_);
   if (place.distance < delta && (behind || !is_over(t, normal, x))) {
     const Vec3d at = target_.scale * vec_cast<double>(x);
-    const contact::Foot foot = contact::closest_point(target_, triangle, at);
+    const contact::Foot foot = nearby_foot(target_, triangle, at);
     const double distance = contact::signed_by(target_, foot, at);
     if (distance != 0) {
       place.normal = vec_cast<float>((1 / distance) * (at - foot.point));

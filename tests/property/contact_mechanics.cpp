@@ -148,6 +148,25 @@ TEST(ContactMechanics, what_sinks_wholly_is_as_deep_as_its_lowest_point) {
   }
 }
 
+TEST(ContactMechanics, a_ball_over_a_wide_face_is_felt_at_once_with_a_small_budget) {
+  constexpr double kRadius = .0018;
+  const BakedBody tool = baked(ball(12, 24, kRadius));
+  const BakedBody base = baked(moved(quartered(block(.08, .08, .04), 2), 0, 0, -.02));
+  Settings settings = kSettings;
+  settings.exact = false;
+  // Over the middle of the face and beside edges of its triangles.
+  for (const Vec3d at : {Vec3d{.0011, .0007, 0}, Vec3d{.0101, .0007, 0}, Vec3d{-.0007, .0098, 0}}) {
+    BakedScene scene({tool.view, base.view}, {{0, 1}}, settings);
+    for (int i = 0; i < 20; ++i) {
+      const double gap = kDelta - 4 * i * kStep;
+      const Pose poses[2] = {{{at.x, at.y, kRadius + gap}, {}}, {}};
+      const TickResult r = tick_or_fail(*scene.engine, poses, {.units = 500});
+      EXPECT_NEAR(r.wrench.force_N.z, kStiffness * (kDelta - gap), .01 * kStiffness * kDelta)
+          << i << " over " << at.x << " " << at.y;
+    }
+  }
+}
+
 TEST(ContactMechanics, a_thin_plate_pushes_back_to_its_middle_and_never_pulls) {
   for (const double thick : {1.0, 2.0, 4.0}) {
     const double half = thick * kDelta / 2;
