@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contacts that vertices are likely to have: where each is by the triangle that the other body's
-// proximity grid names there. Nothing is proved: a search measures those first that may change the
-// push most.
+// proximity grid names there, or by the neighbour beyond its nearest edge. Nothing is proved: a
+// search measures those first that may change the push most.
 #pragma once
 
 #include <cstdint>
@@ -89,7 +89,7 @@ class LikelyContacts {
   /// Appends those of a region's vertices.
   /// @param count  how many of `out` are in use; grows up to its size
   /// @return how many vertices were looked at
-  /// Cost: for each of them a read of the grid and of a triangle.
+  /// Cost: for each of them a read of the grid and of at most two triangles.
   std::uint32_t look(std::uint32_t region, std::span<LikelyContact> out,
                      std::uint32_t& count) noexcept;
 
