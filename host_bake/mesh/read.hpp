@@ -30,10 +30,10 @@ inline constexpr std::string_view kWeldedComment = "palpate: vertices are welded
 /// content does not tell). Positions are welded where the file's numbers are equal, then multiplied
 /// by unit_scale (finite, above zero), then welded at open edges where they differ by rounding, see
 /// weld_coincident(). Vertices are in the order of their first use by a face. Nothing else is
-/// fixed and no number guessed: a file is read whole or refused. A file of to_ply() is not welded
-/// again, so that it comes back as it was written. Throws InputRefused: unreadable, empty, cut,
-/// absurd counts, indices out of range, not finite, no triangles (or none after welding); with file
-/// and line where the format has lines. Files up to 4 GiB. O(n log n) time.
+/// repaired and no number guessed: a file is read whole or refused. A file of to_ply() is not
+/// welded again, so that it comes back as it was written. Throws InputRefused: unreadable, empty,
+/// cut, absurd counts, indices out of range, not finite, no triangles (or none after welding); with
+/// file and line where the format has lines. Files up to 4 GiB. O(n log n) time.
 ReadMesh read_mesh(const std::filesystem::path& file, double unit_scale = 1.0);
 
 /// Binary little-endian PLY, vertices as double, the same bytes for the same mesh. read_mesh()

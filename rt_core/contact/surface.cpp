@@ -30,6 +30,11 @@ std::uint32_t vertex_of(const Surface& surface, std::uint32_t triangle, std::uin
   return surface.image->triangle_vertices[triangle].corner[i];
 }
 
+std::uint32_t neighbour_of(const Surface& surface, std::uint32_t triangle,
+                           std::uint32_t side) noexcept {
+  return surface.image->region_triangles[triangle].neighbours[side];
+}
+
 Foot closest_point(const Surface& surface, std::uint32_t triangle, Vec3d x) noexcept {
   const Vec3d a = corner(surface, triangle, 0);
   const Vec3d b = corner(surface, triangle, 1);
@@ -87,7 +92,7 @@ Vec3d pseudonormal(const Surface& surface, const Foot& foot) noexcept {
   if (is_corner(foot.feature)) return pseudonormal_at(surface, foot.triangle, i);
   if (may_cross(surface, foot.triangle)) return {};
   if (foot.feature == Feature::face) return face_normal(surface, foot.triangle);
-  const std::uint32_t beyond = surface.image->region_triangles[foot.triangle].neighbours[i];
+  const std::uint32_t beyond = neighbour_of(surface, foot.triangle, i);
   const Vec3d own = face_normal(surface, foot.triangle);
   if (beyond == image::kNone || may_cross(surface, beyond)) return {};
   return own + face_normal(surface, beyond);
@@ -148,7 +153,7 @@ NearestNormal nearest_at(const Surface& surface, const Foot& foot, Vec3d towards
   }
   const Vec3d own = face_normal(surface, foot.triangle);
   if (is_edge(foot.feature)) {
-    const std::uint32_t beyond = surface.image->region_triangles[foot.triangle].neighbours[i];
+    const std::uint32_t beyond = neighbour_of(surface, foot.triangle, i);
     const Vec3d other = beyond == image::kNone ? own : face_normal(surface, beyond);
     if (squared_norm(other) > 0) return nearest_on_arc(towards, own, other);
   }
@@ -162,7 +167,7 @@ Edge edge_of(const Surface& surface, std::uint32_t name) noexcept {
   out.from = corner(surface, triangle, side);
   out.to = corner(surface, triangle, (side + 1) % 3);
   out.normal = out.other_normal = face_normal(surface, triangle);
-  const std::uint32_t beyond = surface.image->region_triangles[triangle].neighbours[side];
+  const std::uint32_t beyond = neighbour_of(surface, triangle, side);
   if (beyond == image::kNone) return out;
   const Vec3d other = face_normal(surface, beyond);
   if (!(squared_norm(other) > 0) || !(squared_norm(out.normal) > 0)) return out;

@@ -77,6 +77,9 @@ NearestNormal nearest_at_vertex(const Surface& surface, std::uint32_t vertex,
 NearestNormal nearest_at(const Surface& surface, const Foot& foot, Vec3d direction) noexcept;
 
 std::uint32_t vertex_of(const Surface& surface, std::uint32_t triangle, std::uint32_t i) noexcept;
+/// The triangle across the edge from corner `side` to the next; kNone: border.
+std::uint32_t neighbour_of(const Surface& surface, std::uint32_t triangle,
+                           std::uint32_t side) noexcept;
 
 /// An edge with the normals of the faces on both sides. An edge's name is 3 * triangle + side.
 struct Edge {

@@ -49,8 +49,8 @@ contact::Foot nearby_foot(const contact::Surface& surface, std::uint32_t triangl
                           Vec3d x) noexcept {
   const contact::Foot foot = contact::closest_point(surface, triangle, x);
   if (!contact::is_edge(foot.feature)) return foot;
-  const image::RegionTriangle& at = surface.image->region_triangles[triangle];
-  const std::uint32_t beyond = at.neighbours[contact::which(foot.feature)];
+  const std::uint32_t beyond =
+      contact::neighbour_of(surface, triangle, contact::which(foot.feature));
   if (beyond == image::kNone) return foot;
   const contact::Foot next = contact::closest_point(surface, beyond, x);
   return next.squared < foot.squared ? next : foot;
