@@ -215,9 +215,8 @@ constexpr Table<Scene> kTables[] = {
     {"[force]", kForceKeys, "How contacts become a force."},
     {"[coupling]", kCouplingKeys, "The simulated tool of `coupling = \"virtual\"`."},
     {"[limits]", kLimitKeys,
-     "Capacities. More room takes more memory, never more time. Where nodes or contacts are used "
-     "up a tick still answers, "
-     "truncated; a replay without a budget takes more of both, up to `max_memory_MB`."},
+     "Capacities. More room takes more memory, never more time. Where one is used up a tick still "
+     "answers, truncated; a replay without a budget takes more, up to `max_memory_MB`."},
     {"[run]", kRunKeys, "The real-time loop."},
     {"[mock]", kMockKeys,
      "The mock device: a simulated hand, a mass held to a path by a spring and a damper; with "

@@ -93,8 +93,8 @@ struct Settings {
 struct Limits {
   std::uint32_t nodes = 1u << 17;     ///< nodes of the bounding volume test tree over all pairs
   std::uint32_t contacts = 1u << 14;  ///< contacts of one tick over all pairs (regions engine: no
-                                      ///< more than 8 for each vertex and 2 for each convex edge
-                                      ///< take memory)
+                                      ///< more than 64 for each vertex and each convex edge take
+                                      ///< memory)
   std::uint32_t clusters = 1u << 12;  ///< grid points of cluster_radius_m near contacts of one tick
 };
 

@@ -3,6 +3,7 @@
 #include <initializer_list>
 
 #include "rt_core/base/arena.hpp"
+#include "rt_core/contact/found.hpp"
 #include "rt_core/engine.hpp"
 #include "rt_core/palpate_rt.hpp"
 #include "rt_core/workspace.hpp"
@@ -121,12 +122,10 @@ SideCounts sides_of(const Scene& scene) noexcept {
   return out;
 }
 
-/// What limits ask for, but no more than vertices and edges usually have.
+/// What limits ask for, but no more than vertices and edges can have.
 std::size_t contacts_for(const Scene& scene, const Limits& limits) noexcept {
   const SideCounts counts = sides_of(scene);
-  constexpr std::size_t kOfVertex = 8;
-  constexpr std::size_t kOfEdge = 2;
-  return smaller(limits.contacts, kOfVertex * counts.vertices + kOfEdge * counts.edges);
+  return smaller(limits.contacts, contact::kMostFound * (counts.vertices + counts.edges));
 }
 
 void lay_out_levels(Arena& arena, const Limits& limits, Layout& out) noexcept {

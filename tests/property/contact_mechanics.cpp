@@ -201,6 +201,21 @@ TEST(ContactMechanics, a_wedge_in_a_groove_feels_both_walls) {
   expect_forces(tool, base, pressed, both_walls, 2e-2);
 }
 
+// A vertex has a contact beside each of the cavity's edges: more than eight in the mean.
+TEST(ContactMechanics, a_ball_in_a_cavity_that_fits_it_has_room_for_all_its_contacts) {
+  bake::Mesh cavity = ball(24, 48, .0101);
+  for (bake::Face& f : cavity.faces) std::swap(f[1], f[2]);
+  append(cavity, block(.04, .04, .04), 0, 0, 0);
+  const BakedBody tool = baked(ball(24, 48, .01)), base = baked(std::move(cavity));
+  Settings settings = kSettings;
+  settings.delta_m = 1.5e-3;
+  BakedScene scene({tool.view, base.view}, {{0, 1}}, settings, {.contacts = 1u << 20});
+  const Pose poses[2] = {{{0, 0, -.002}, {}}, {}};
+  const TickResult r = tick_or_fail(*scene.engine, poses);
+  EXPECT_FALSE(r.certificate.truncated_by_memory);
+  EXPECT_GT(r.wrench.force_N.z, kStiffness * kDelta);
+}
+
 TEST(ContactMechanics, what_a_does_to_b_b_does_to_a) {
   const BakedBody a = baked(quartered(block(.016, .012, .018), 1)), b = baked(ball(12, 16, .008));
   BakedScene one({a.view, b.view}, {{0, 1}}, kSettings);

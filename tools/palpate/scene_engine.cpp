@@ -60,6 +60,7 @@ bool SceneEngine::grow() {
   Limits larger = limits_;
   larger.nodes *= 2;
   larger.contacts *= 2;
+  larger.clusters *= 2;
   const std::size_t bytes =
       larger.nodes > limits_.nodes ? required_bytes(scene_, larger, config_.settings.engine) : 0;
   if (bytes == 0 || !fits(image_bytes_ + bytes)) return false;

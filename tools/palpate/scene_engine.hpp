@@ -33,8 +33,8 @@ class SceneEngine {
   /// A new engine on the same memory, as if nothing had ever ticked.
   void restart();
 
-  /// Makes room for twice as many nodes and contacts, in a new engine. False, and nothing changed,
-  /// where that is more than the scene's max_memory_MB or than an engine can use.
+  /// Makes twice the room in a new engine. False, and nothing changed, where that is more than the
+  /// scene's max_memory_MB or than an engine can use.
   [[nodiscard]] bool grow();
 
   /// [bodies] where the scene puts them.
