@@ -244,81 +244,114 @@ struct OracleSurface::Tree {
   }
 };
 
-OracleSurface::OracleSurface(const ImageView& image) : tree(std::make_unique<Tree>()) {
-  const auto& header = *image.header;
-  const Vec3d centre{header.centre_m[0], header.centre_m[1], header.centre_m[2]};
-  open = (header.flags & std::uint32_t(image::HeaderFlag::open)) != 0;
-  const bool crossing = (header.flags & std::uint32_t(image::HeaderFlag::self_crossing)) != 0;
-  solid_depth_m = 0.1 * header.radius_m;
+namespace {
+
+/// Borders and crossing faces meet there. Read from the image: that the baker finds them is tested
+/// elsewhere.
+bool has_no_inside(const ImageView& image, std::uint32_t vertex) {
+  return norm(vec3d(image.surface_vertices[vertex].pseudonormal)) == 0;
+}
+
+bool has(const ImageView& image, image::HeaderFlag flag) {
+  return (image.header->flags & std::uint32_t(flag)) != 0;
+}
+
+void add_distinct(std::vector<Vec3d>& normals, Vec3d n) {
+  const bool known =
+      std::any_of(normals.begin(), normals.end(), [&](Vec3d m) { return dot(m, n) > 1 - 1e-10; });
+  if (!known) normals.push_back(n);
+}
+
+double angle_between(Vec3d a, Vec3d b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
+
+}  // namespace
+
+OracleSurface::OracleSurface(const ImageView& image)
+    : open(has(image, image::HeaderFlag::open)),
+      solid_depth_m(0.1 * image.header->radius_m),
+      tree(std::make_unique<Tree>()) {
+  read_triangles(image);
+  link_edges(image);
+  gather_normals(image);
+  build_tree();
+}
+
+void OracleSurface::read_triangles(const ImageView& image) {
+  const double* c = image.header->centre_m;
+  const double radius_m = image.header->radius_m;
   for (const image::SurfaceVertex& v : image.surface_vertices) {
-    vertices.push_back({centre + header.radius_m * vec3d(v.position), {}, {}, {}});
+    vertices.push_back({Vec3d{c[0], c[1], c[2]} + radius_m * vec3d(v.position), {}, {}, {}});
   }
-  const auto has_no_inside = [&](std::uint32_t vertex) {
-    return norm(vec3d(image.surface_vertices[vertex].pseudonormal)) == 0;
-  };
-  constexpr double kLeastHeight = 1e-6;  // in radii
+  constexpr double kLeastHeight = 1e-6;  // in radii; less is rounding
+  const bool crossing = has(image, image::HeaderFlag::self_crossing);
   for (const image::TriangleVertices& t : image.triangle_vertices) {
     Triangle& out = triangles.emplace_back();
     out.edge = {kNone, kNone, kNone};
-    double longest = 0;
+    out.crosses = crossing;
     Vec3d p[3];
     for (std::size_t i = 0; i < 3; ++i) {
       out.corner[i] = t.corner[i];
       p[i] = vertices[t.corner[i]].position;
+      out.crosses = out.crosses && has_no_inside(image, t.corner[i]);
     }
+    double longest = 0;
     for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, norm(p[(i + 1) % 3] - p[i]));
     const Vec3d normal = cross(p[1] - p[0], p[2] - p[0]);
-    if (norm(normal) > kLeastHeight * header.radius_m * longest) out.normal = unit(normal);
-    out.crosses = crossing && has_no_inside(t.corner[0]) && has_no_inside(t.corner[1]) &&
-                  has_no_inside(t.corner[2]);
+    if (norm(normal) > kLeastHeight * radius_m * longest) out.normal = unit(normal);
   }
-  // Edges, by the neighbours of their triangles.
+}
+
+/// By the neighbours of their triangles.
+void OracleSurface::link_edges(const ImageView& image) {
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     for (std::uint32_t i = 0; i < 3; ++i) {
       if (triangles[t].edge[i] != kNone) continue;
       const auto number = std::uint32_t(edges.size());
-      Edge edge{triangles[t].corner[i], triangles[t].corner[(i + 1) % 3], {t}, false, false};
       triangles[t].edge[i] = number;
+      Edge edge{triangles[t].corner[i], triangles[t].corner[(i + 1) % 3], {t}, false, false};
       const std::uint32_t beyond = image.region_triangles[t].neighbours[i];
       if (beyond != kNone) {
         edge.faces.push_back(beyond);
+        const auto& other = triangles[beyond].corner;
         for (std::uint32_t k = 0; k < 3; ++k) {
-          const auto& other = triangles[beyond].corner;
-          if (other[k] == edge.to && other[(k + 1) % 3] == edge.from) {
-            triangles[beyond].edge[k] = number;
-            const Vec3d n = triangles[t].normal, m = triangles[beyond].normal;
-            const double height =
-                dot(n, vertices[other[(k + 2) % 3]].position - vertices[edge.from].position);
-            const double angle = std::atan2(norm(cross(n, m)), dot(n, m));
-            const bool bent = angle > 1e-4 && norm(n) > 0 && norm(m) > 0;
-            edge.convex = bent && height < 0;
-            edge.concave = bent && height > 0;
-          }
+          if (other[k] != edge.to || other[(k + 1) % 3] != edge.from) continue;
+          triangles[beyond].edge[k] = number;
+          bend(edge, other[(k + 2) % 3]);
         }
       }
       edges.push_back(edge);
     }
   }
-  const auto add = [](std::vector<Vec3d>& normals, Vec3d n) {
-    const bool known =
-        std::any_of(normals.begin(), normals.end(), [&](Vec3d m) { return dot(m, n) > 1 - 1e-10; });
-    if (!known) normals.push_back(n);
-  };
+}
+
+/// @param opposite  the corner of the second face that is not on the edge
+void OracleSurface::bend(Edge& edge, std::uint32_t opposite) const {
+  const Vec3d n = triangles[edge.faces[0]].normal, m = triangles[edge.faces[1]].normal;
+  if (norm(n) == 0 || norm(m) == 0 || angle_between(n, m) <= 1e-4) return;
+  const double height = dot(n, vertices[opposite].position - vertices[edge.from].position);
+  edge.convex = height < 0;
+  edge.concave = height > 0;
+}
+
+void OracleSurface::gather_normals(const ImageView& image) {
   for (const Triangle& t : triangles) {
     if (norm(t.normal) == 0) continue;
     for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t after = (i + 1) % 3, before = (i + 2) % 3;
       Vertex& v = vertices[t.corner[i]];
-      add(v.normals, t.normal);
-      const bool beside_concave = edges[t.edge[i]].concave || edges[t.edge[(i + 2) % 3]].concave;
-      if (beside_concave) add(v.concave_normals, t.normal);
-      const Vec3d to = unit(vertices[t.corner[(i + 1) % 3]].position - v.position);
-      const Vec3d from = unit(vertices[t.corner[(i + 2) % 3]].position - v.position);
-      v.pseudonormal += std::atan2(norm(cross(to, from)), dot(to, from)) * t.normal;
+      add_distinct(v.normals, t.normal);
+      if (edges[t.edge[i]].concave || edges[t.edge[before]].concave) {
+        add_distinct(v.concave_normals, t.normal);
+      }
+      if (has_no_inside(image, t.corner[i])) continue;
+      v.pseudonormal += angle_between(vertices[t.corner[after]].position - v.position,
+                                      vertices[t.corner[before]].position - v.position) *
+                        t.normal;
     }
   }
-  for (std::uint32_t i = 0; i < vertices.size(); ++i) {
-    if (has_no_inside(i)) vertices[i].pseudonormal = {};
-  }
+}
+
+void OracleSurface::build_tree() {
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     if (norm(triangles[t].normal) == 0) continue;
     const auto corner = [&](std::size_t i) {

@@ -50,6 +50,13 @@ class OracleSurface {
 
   struct Tree;
   std::unique_ptr<Tree> tree;
+
+ private:
+  void read_triangles(const ImageView& image);
+  void link_edges(const ImageView& image);
+  void bend(Edge& edge, std::uint32_t opposite) const;
+  void gather_normals(const ImageView& image);
+  void build_tree();
 };
 
 struct OracleContact {
