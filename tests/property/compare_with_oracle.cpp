@@ -19,20 +19,15 @@
 #include <random>
 
 #include "tests/support/contact_oracle.hpp"
+#include "tests/support/shapes.hpp"
 #include "tools/bench/scenes.hpp"
 
 namespace palpate::bench {
 namespace {
 
 constexpr double kDelta = 0.02;
+constexpr double kFar = 5 * kDelta;
 constexpr double kStiffness = 600;
-
-bake::Mesh scaled(bake::Mesh mesh, double factor) {
-  for (bake::Point& p : mesh.points) {
-    for (double& x : p) x *= factor;
-  }
-  return mesh;
-}
 
 class Poses {
  public:
@@ -41,12 +36,13 @@ class Poses {
         b_(b),
         wide_(a, b,
               {.engine = EngineKind::regions,
-               .delta_m = 5 * kDelta,
+               .delta_m = kFar,
                .exact = true,
                .stiffness_N_per_m = 0}),
-        rng_(seed),
-        near_as_they_lie_(distance_at(wide_, {}, 5 * kDelta) < 5 * kDelta &&
-                          distance_at(wide_, {}, 5 * kDelta) > -2 * kDelta) {}
+        rng_(seed) {
+    const double distance = distance_at(wide_, {}, kFar);
+    near_as_they_lie_ = distance > -2 * kDelta && distance < kFar;
+  }
 
   Pose at(int i) { return near_as_they_lie_ && i % 2 == 1 ? where_they_lie() : from_outside(); }
 
@@ -58,7 +54,7 @@ class Poses {
     const double apart = a_.view.header->radius_m + b_.view.header->radius_m;
     pose.position_m = centre_of(b_) + apart * out - rotation(pose.orientation) * centre_of(a_);
     constexpr double kTouching = 0.05 * kDelta;
-    pose = brought_near(wide_, pose, out, kTouching, 5 * kDelta);
+    pose = brought_near(wide_, pose, out, kTouching, kFar);
     pose.position_m += uniform(-2, 1) * kDelta * out;
     return pose;
   }
@@ -89,7 +85,7 @@ class Poses {
   const Body& b_;
   Bench wide_;
   std::mt19937 rng_;
-  bool near_as_they_lie_;
+  bool near_as_they_lie_ = false;
 };
 
 struct Tally {
@@ -100,8 +96,8 @@ struct Tally {
 void compare(const char* name_a, const char* name_b, int poses, std::uint32_t seed) {
   const bake::Mesh mesh_a = mesh_of(name_a), mesh_b = mesh_of(name_b);
   const double factor = 1 / std::min(bake::radius_of(mesh_a), bake::radius_of(mesh_b));
-  const Body a(scaled(mesh_a, factor), kDelta, bake::ForEngine::both);
-  const Body b(scaled(mesh_b, factor), kDelta, bake::ForEngine::both);
+  const Body a(test::scaled(mesh_a, factor), kDelta, bake::ForEngine::both);
+  const Body b(test::scaled(mesh_b, factor), kDelta, bake::ForEngine::both);
   const test::OracleSurface surface_a(a.view), surface_b(b.view);
   Settings settings{
       .delta_m = kDelta, .exact = true, .stiffness_N_per_m = kStiffness, .cluster_radius_m = 0};
@@ -119,8 +115,7 @@ void compare(const char* name_a, const char* name_b, int poses, std::uint32_t se
   std::printf("pose,engine,off,oracle_N,off_N,off_Nm,px,py,pz,qw,qx,qy,qz\n");
   for (int i = 0; i < poses; ++i) {
     const Pose pose = random.at(i);
-    const test::OracleAnswer truth =
-        test::contact_oracle(surface_a, pose, surface_b, {}, kDelta, kStiffness);
+    const Wrench truth = test::contact_oracle(surface_a, pose, surface_b, {}, kDelta, kStiffness);
     const double size = norm(truth.force_N);
     for (Engine& engine : engines) {
       const Wrench w = engine.bench.tick_at(pose).wrench;

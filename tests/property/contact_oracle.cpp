@@ -44,8 +44,7 @@ TEST_P(ContactOracle, tells_the_wrench_that_both_engines_find) {
     Pose pose = approach(tool.mesh, base.mesh, 0.1 * kDelta, 4, out, turn(3.0 * random_unit(rng)));
     pose.position_m += (gap(rng) * kDelta) * out;
     const Pose poses[2] = {pose, {}};
-    const OracleAnswer truth =
-        contact_oracle(tool_surface, pose, base_surface, {}, kDelta, kStiffness);
+    const Wrench truth = contact_oracle(tool_surface, pose, base_surface, {}, kDelta, kStiffness);
     felt += norm(truth.force_N) > 0 ? 1 : 0;
     for (BakedScene* scene : {&levels, &regions}) {
       const TickResult r = tick_or_fail(*scene->engine, poses);

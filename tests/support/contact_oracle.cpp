@@ -133,7 +133,10 @@ Nearest nearest(Vec3d u, const std::vector<Vec3d>& normals) {
   }
   const Eigen::Vector3d p = columns * nonnegative_least_squares(columns, to_eigen(u));
   const Vec3d projected{p[0], p[1], p[2]};
-  if (norm(projected) > out.cosine) out = {unit(projected), norm(projected)};
+  constexpr double kRightAngle = 1e-9;  // the projection is 0 there and beyond
+  if (norm(projected) > std::max(out.cosine, kRightAngle)) {
+    out = {unit(projected), norm(projected)};
+  }
   return out;
 }
 
@@ -595,23 +598,32 @@ std::vector<Found> contacts_of_edges(const Side& side, const std::vector<double>
   return found;
 }
 
+/// In world axes; the normal pushes a.
+struct Contact {
+  Vec3d normal{};
+  double distance = 0;  ///< d
+  double weight = 0;    ///< w
+  double strength = 0;  ///< g
+  Vec3d place{};
+};
+
 /// Sec. 5, without clusters.
-Vec3d torque_of(const std::vector<OracleContact>& contacts, const LeastPush& push, Vec3d origin_m,
+Vec3d torque_of(const std::vector<Contact>& contacts, const LeastPush& push, Vec3d origin_m,
                 double stiffness) {
   Vec3d torque{};
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (!(push.multipliers[i] > 0)) continue;
     Vec3d sum{};
     double all = 0;
-    for (const OracleContact& c : contacts) {
+    for (const Contact& c : contacts) {
       const double cosine = dot(contacts[i].normal, c.normal);
-      const double above = c.strength_m - 0.5 * std::max(0.0, push.along(c.normal));
-      if (cosine <= 0 || c.strength_m <= 0 || above <= 0) continue;
+      const double above = c.strength - 0.5 * std::max(0.0, push.along(c.normal));
+      if (cosine <= 0 || c.strength <= 0 || above <= 0) continue;
       const double mass = above * above * 0.5 * cosine * cosine * (1 + cosine);
-      sum += mass * c.place_m;
+      sum += mass * c.place;
       all += mass;
     }
-    const Vec3d place = all > 0 ? (1 / all) * sum : contacts[i].place_m;
+    const Vec3d place = all > 0 ? (1 / all) * sum : contacts[i].place;
     torque += cross(place - origin_m, 2 * stiffness * push.multipliers[i] * contacts[i].normal);
   }
   return torque;
@@ -619,12 +631,12 @@ Vec3d torque_of(const std::vector<OracleContact>& contacts, const LeastPush& pus
 
 }  // namespace
 
-OracleAnswer contact_oracle(const OracleSurface& a, const Pose& pose_a, const OracleSurface& b,
-                            const Pose& pose_b, double delta_m, double stiffness_N_per_m) {
-  OracleAnswer out;
+Wrench contact_oracle(const OracleSurface& a, const Pose& pose_a, const OracleSurface& b,
+                      const Pose& pose_b, double delta_m, double stiffness_N_per_m) {
+  std::vector<Contact> contacts;
   const auto keep = [&](const Found& c, const Pose& pose_q, double sign) {
     const Mat3d r = rotation(pose_q.orientation);
-    out.contacts.push_back(
+    contacts.push_back(
         {sign * (r * c.normal), c.distance, c.weight, 0, pose_q.position_m + r * c.place});
   };
   const auto see = [&](const Side& side, const Pose& pose_q, double sign) {
@@ -638,18 +650,17 @@ OracleAnswer contact_oracle(const OracleSurface& a, const Pose& pose_a, const Or
   see(side_of(a, pose_a, b, pose_b), pose_b, 1);
   see(side_of(b, pose_b, a, pose_a), pose_a, -1);
   double most = 0;  // G
-  for (const OracleContact& c : out.contacts) {
-    most = std::max(most, c.weight * (delta_m - c.distance_m));
+  for (const Contact& c : contacts) {
+    most = std::max(most, c.weight * (delta_m - c.distance));
   }
   std::vector<Constraint> constraints;
-  for (OracleContact& c : out.contacts) {
-    c.strength_m = c.weight * (delta_m - c.distance_m) - (1 - c.weight) * most / 2;
-    constraints.push_back({c.normal, c.strength_m});
+  for (Contact& c : contacts) {
+    c.strength = c.weight * (delta_m - c.distance) - (1 - c.weight) * most / 2;
+    constraints.push_back({c.normal, c.strength});
   }
   const LeastPush push = least_push(constraints);
-  out.force_N = 2 * stiffness_N_per_m * push.vector();
-  out.torque_Nm = torque_of(out.contacts, push, pose_a.position_m, stiffness_N_per_m);
-  return out;
+  return {2 * stiffness_N_per_m * push.vector(),
+          torque_of(contacts, push, pose_a.position_m, stiffness_N_per_m)};
 }
 
 }  // namespace palpate::test

@@ -59,22 +59,13 @@ class OracleSurface {
   void build_tree();
 };
 
-struct OracleContact {
-  Vec3d normal{};         ///< pushes a; world axes
-  double distance_m = 0;  ///< d
-  double weight = 0;      ///< w
-  double strength_m = 0;  ///< g
-  Vec3d place_m{};        ///< world
-};
-
-struct OracleAnswer {
-  std::vector<OracleContact> contacts;  ///< with d up to 1.25 delta
-  Vec3d force_N{};                      ///< on a
-  Vec3d torque_Nm{};  ///< about a's origin, each contact counting (cluster radius 0)
-};
-
-/// @param a  the tool
-OracleAnswer contact_oracle(const OracleSurface& a, const Pose& pose_a, const OracleSurface& b,
-                            const Pose& pose_b, double delta_m, double stiffness_N_per_m);
+/// The wrench on a, the tool, about its origin, world axes; each contact counts in the torque
+/// (cluster radius 0).
+/// @param delta_m  contact tolerance, > 0  @param stiffness_N_per_m  >= 0
+/// Cost: every vertex and convex edge of each body asks for closest points of the other; the least
+/// push is solved densely for all contacts. Departures from the page: there is no limit of ways and
+/// contacts of one vertex.
+Wrench contact_oracle(const OracleSurface& a, const Pose& pose_a, const OracleSurface& b,
+                      const Pose& pose_b, double delta_m, double stiffness_N_per_m);
 
 }  // namespace palpate::test

@@ -50,9 +50,9 @@ struct Recording {
 /// formatted or written there. The scene's friction and damping (SceneForces) are in the wrench.
 ///
 /// Where neither time nor units are limited the answer shall not be cut for want of memory either:
-/// a tick that runs out of it is done again by an engine with twice the room, up to
-/// the scene's max_memory_MB. Throws Failure as SceneEngine does, kOther where a tick fails, and
-/// what the listeners throw.
+/// a tick that runs out of it is done again by an engine with twice the room, up to the scene's
+/// max_memory_MB. Throws Failure as SceneEngine does, kOther where a tick fails, and what the
+/// listeners throw.
 Recording replay(const config::Scene& scene, const PoseTrack& track, const ReplayOptions& options,
                  const ReplayListeners& listeners);
 
