@@ -26,7 +26,7 @@ typedef uint16_t palpate_status;
 /* Text of a status, static storage, never null. */
 const char* palpate_describe(palpate_status status);
 
-#define PALPATE_IMAGE_WORDS 40
+#define PALPATE_IMAGE_WORDS 38
 
 /* A validated image, used in place: its bytes must outlive it. */
 typedef struct palpate_image {

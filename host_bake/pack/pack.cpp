@@ -301,7 +301,6 @@ std::vector<std::byte> pack(const Hierarchy& tree, const Metrics& metrics,
     image.add(image::SectionId::proximity_grid, std::vector{near.grid});
     image.add(image::SectionId::proximity_bricks, near.bricks);
     image.add(image::SectionId::proximity_cells, near.cells);
-    image.add(image::SectionId::region_runs, regions.runs);
     image.add(image::SectionId::surface_vertices, regions.surface.vertices);
     image.add(image::SectionId::vertex_normals, regions.surface.normals);
     image.add(image::SectionId::surface_edges, regions.surface.edges);

@@ -10,7 +10,6 @@
 #include "host_bake/base/parallel.hpp"
 #include "host_bake/mesh/topology.hpp"
 #include "host_bake/metrics/vector.hpp"
-#include "host_bake/regions/even_order.hpp"
 #include "host_bake/regions/fitted_box.hpp"
 #include "rt_core/image/format.hpp"
 
@@ -39,9 +38,7 @@ class Builder {
     count_regions();
     parallel_for(out_.nodes.size(), [&](std::size_t i) { fit_children(i); });
     measure_regions();
-    rank_regions();
     fill_triangles();
-    find_runs();
     out_.surface = surface_parts(mesh_, out_.triangles, out_.regions.size(), crossing_faces);
     set_normal_cones(out_.triangles, out_.surface.runs);
     return std::move(out_);
@@ -87,8 +84,7 @@ class Builder {
     node.region = out_.nodes[parent].region;
     if (from.region) {
       node.region = static_cast<std::uint32_t>(out_.regions.size());
-      out_.regions.push_back(
-          {.parent = parent, .slot = slot, .reach = 0, .radius = 0, .rank = 0, .reserved = {}});
+      out_.regions.push_back({.parent = parent, .slot = slot, .reach = 0, .radius = 0});
     }
     node.leaf = Partition::is_group(from) ? 1 : 0;
     out_.nodes.push_back(node);
@@ -222,25 +218,6 @@ class Builder {
     }
   }
 
-  Vec3d centre_of(const image::Region& r) const {
-    const image::RegionNode& node = out_.nodes[r.parent];
-    return {double(node.centre[0][r.slot]), double(node.centre[1][r.slot]),
-            double(node.centre[2][r.slot])};
-  }
-
-  /// Regions that touch are two mean radii apart.
-  void rank_regions() {
-    std::vector<Vec3d> centres;
-    double radii = 0;
-    for (const image::Region& r : out_.regions) {
-      centres.push_back(centre_of(r));
-      radii += double(r.radius);
-    }
-    const std::vector<std::uint32_t> places =
-        even_order(centres, 2 * radii / double(centres.size()));
-    for (std::size_t i = 0; i < places.size(); ++i) out_.regions[i].rank = places[i];
-  }
-
   void fill_triangles() {
     std::vector<std::uint32_t> place(order_.size());
     for (std::uint32_t i = 0; i < order_.size(); ++i) place[order_[i]] = i;
@@ -275,16 +252,6 @@ class Builder {
       out_.triangles[i].component = image::kNone;
       if (last != image::kNone) out_.triangles[last].component = i;
       first = last = i;
-    }
-  }
-
-  void find_runs() {
-    out_.runs.resize(out_.regions.size());
-    image::RegionRun run{};
-    for (std::uint32_t i = 0; i < region_of_.size(); ++i) {
-      if (i == 0 || region_of_[i] != region_of_[i - 1]) run = {.first = i, .count = 0};
-      ++run.count;
-      if (run.count > out_.runs[region_of_[i]].count) out_.runs[region_of_[i]] = run;
     }
   }
 

@@ -17,7 +17,6 @@ struct RegionTree {
   std::vector<image::RegionNode> nodes;
   std::vector<image::RegionTriangle> triangles;
   std::vector<image::Region> regions;
-  std::vector<image::RegionRun> runs;  ///< the longest of each region
   SurfaceParts surface;
 };
 
@@ -28,8 +27,7 @@ struct RegionTree {
 ///
 /// @param crossing_faces  of the mesh, by index: what is inside is not told by them
 /// RegionTriangle::piece is left kNone: pack() knows the image's pieces. Deterministic, also across
-/// numbers of threads. Throws InputRefused where a limit of the format is passed. O(n log^2 n), and
-/// the square of the number of regions.
+/// numbers of threads. Throws InputRefused where a limit of the format is passed. O(n log^2 n).
 RegionTree build_regions(const NormalMesh& mesh, const RegionOptions& options,
                          std::span<const std::size_t> crossing_faces = {});
 

@@ -14,11 +14,11 @@ constexpr std::uint32_t kKnownFlags = static_cast<std::uint32_t>(HeaderFlag::rep
 
 // Bytes a record, by slot.
 constexpr std::uint32_t kStrides[] = {
-    sizeof(Level),         sizeof(Piece),          sizeof(Vertex),      sizeof(std::uint32_t),
-    sizeof(std::uint32_t), sizeof(Triangle),       sizeof(VirtualFace), sizeof(Vertex),
-    sizeof(RegionNode),    sizeof(RegionTriangle), sizeof(Region),      sizeof(ProximityGrid),
-    sizeof(std::uint32_t), sizeof(std::uint32_t),  sizeof(RegionRun),   sizeof(SurfaceVertex),
-    sizeof(SurfaceNormal), sizeof(std::uint32_t),  sizeof(SurfaceRun),  sizeof(TriangleVertices)};
+    sizeof(Level),         sizeof(Piece),          sizeof(Vertex),          sizeof(std::uint32_t),
+    sizeof(std::uint32_t), sizeof(Triangle),       sizeof(VirtualFace),     sizeof(Vertex),
+    sizeof(RegionNode),    sizeof(RegionTriangle), sizeof(Region),          sizeof(ProximityGrid),
+    sizeof(std::uint32_t), sizeof(std::uint32_t),  sizeof(SurfaceVertex),   sizeof(SurfaceNormal),
+    sizeof(std::uint32_t), sizeof(SurfaceRun),     sizeof(TriangleVertices)};
 constexpr std::size_t kKnownSections = sizeof(kStrides) / sizeof(kStrides[0]);
 constexpr SectionId kRequired[] = {SectionId::levels, SectionId::pieces, SectionId::vertices,
                                    SectionId::triangles};

@@ -40,29 +40,15 @@ bool bricks_sound(const ImageView& image) noexcept {
   return fine * kBrickCells == image.proximity_cells.size();
 }
 
-bool runs_sound(const ImageView& image) noexcept {
-  if (image.region_runs.size() != image.regions.size()) return false;
-  for (std::uint32_t i = 0; i < image.region_runs.size(); ++i) {
-    const RegionRun& run = image.region_runs[i];
-    if (run.count < 1 || std::uint64_t{run.first} + run.count > image.region_triangles.size()) {
-      return false;
-    }
-    for (const RegionTriangle& t : image.region_triangles.subspan(run.first, run.count)) {
-      if (t.region != i) return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
 Status check_proximity(const ImageView& image) noexcept {
   if (image.proximity_grid == nullptr && image.proximity_bricks.empty() &&
-      image.proximity_cells.empty() && image.region_runs.empty()) {
+      image.proximity_cells.empty()) {
     return Status::ok;
   }
   if (image.proximity_grid == nullptr || image.proximity_bricks.empty() ||
-      image.proximity_cells.empty() || image.region_runs.empty() || image.regions.empty()) {
+      image.proximity_cells.empty() || image.regions.empty()) {
     return Status::image_missing_section;
   }
   if (image.header->sections[static_cast<std::size_t>(SectionId::proximity_grid)].count != 1 ||
@@ -70,7 +56,7 @@ Status check_proximity(const ImageView& image) noexcept {
     return Status::image_bad_section;
   }
   if (!grid_sound(*image.proximity_grid)) return Status::image_bad_float;
-  return bricks_sound(image) && runs_sound(image) ? Status::ok : Status::image_bad_index;
+  return bricks_sound(image) ? Status::ok : Status::image_bad_index;
 }
 
 }  // namespace palpate::image::checks

@@ -217,17 +217,7 @@ bool records_clear(const ImageView& image) noexcept {
   for (const RegionNode& node : image.region_nodes) {
     for (const std::uint32_t r : node.reserved) bits |= r;
   }
-  for (const Region& region : image.regions) {
-    for (const std::uint32_t r : region.reserved) bits |= r;
-  }
   return bits == 0;
-}
-
-bool ranks_sound(const ImageView& image) noexcept {
-  for (const Region& region : image.regions) {
-    if (region.rank >= image.regions.size()) return false;
-  }
-  return true;
 }
 
 // Whether each triangle leads to the first one of its component, and those from one to the next.
@@ -273,7 +263,7 @@ Status check_regions(const ImageView& image) noexcept {
   if (!runs_tile(image) || !parents_agree(image) || !regions_sound(image)) {
     return Status::image_bad_tree;
   }
-  if (!ranks_sound(image) || !components_sound(image)) return Status::image_bad_index;
+  if (!components_sound(image)) return Status::image_bad_index;
   if (!lengths_sound(image)) return Status::image_bad_float;
   for (const RegionNode& node : image.region_nodes) {
     if (!boxes_sound(node)) return Status::image_bad_float;

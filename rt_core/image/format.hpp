@@ -19,7 +19,7 @@
 namespace palpate::image {
 
 inline constexpr std::uint8_t kMagic[8] = {0x89, 'P', 'A', 'L', 'P', '\r', '\n', 0x1a};
-inline constexpr std::uint16_t kFormatMajor = 2;  ///< another major number is refused
+inline constexpr std::uint16_t kFormatMajor = 3;  ///< another major number is refused
 inline constexpr std::uint16_t kFormatMinor = 0;  ///< a newer minor number still loads
 inline constexpr std::uint32_t kByteOrderMark = 0x01020304;
 inline constexpr std::size_t kAlignment = 64;
@@ -76,19 +76,18 @@ enum class SectionId : std::uint32_t {
   region_nodes = 8,      ///< RegionNode, breadth first
   region_triangles = 9,  ///< RegionTriangle; the source mesh in the order of the leaves
   regions = 10,          ///< Region
-  // Where to look first: all four, with those of the regions, or none.
+  // Where to look first: all three, with those of the regions, or none.
   proximity_grid = 11,    ///< ProximityGrid; one
   proximity_bricks = 12,  ///< u32; x fastest
   proximity_cells = 13,   ///< u32, into region_triangles; kBrickCells a fine brick, x fastest
-  region_runs = 14,       ///< RegionRun; of each region
   // What contacts see of the surface: all, with those of the regions, or none. A surface may be
   // without convex edges.
-  surface_vertices = 15,   ///< SurfaceVertex, region by region
-  vertex_normals = 16,     ///< SurfaceNormal; each vertex's own run
-  surface_edges = 17,      ///< u32, 3 * triangle + side; convex edges, region by region
-  surface_runs = 18,       ///< SurfaceRun; of each region
-  triangle_vertices = 19,  ///< TriangleVertices; of each region triangle
-  // 20 is for later minor versions; it is empty so far.
+  surface_vertices = 14,   ///< SurfaceVertex, region by region
+  vertex_normals = 15,     ///< SurfaceNormal; each vertex's own run
+  surface_edges = 16,      ///< u32, 3 * triangle + side; convex edges, region by region
+  surface_runs = 17,       ///< SurfaceRun; of each region
+  triangle_vertices = 18,  ///< TriangleVertices; of each region triangle
+  // 19 and 20 are for later minor versions; they are empty so far.
 };
 inline constexpr std::size_t kSectionSlots = 21;
 

@@ -58,10 +58,8 @@ struct Region {
   std::uint32_t slot;    ///< ... and which child of it the root is
   float reach;           ///< farthest point from the object's centre, rounded up
   float radius;          ///< half the diagonal of its root's box, rounded up
-  std::uint32_t rank;    ///< place in an order whose every beginning is spread as all regions are
-  std::uint32_t reserved[3];
 };
-static_assert(sizeof(Region) == 32);
+static_assert(sizeof(Region) == 16);
 
 inline constexpr std::uint32_t kBrickEdge = 4;  ///< cells
 inline constexpr std::uint32_t kBrickCells = kBrickEdge * kBrickEdge * kBrickEdge;
@@ -82,13 +80,6 @@ struct ProximityGrid {
   std::uint32_t reserved;
 };
 static_assert(sizeof(ProximityGrid) == 32);
-
-/// Triangles of a region that follow one another: all of them, where its leaves are equally deep.
-struct RegionRun {
-  std::uint32_t first;  ///< into region_triangles
-  std::uint32_t count;  ///< at least 1
-};
-static_assert(sizeof(RegionRun) == 8);
 
 /// A vertex of the baked surface: all corners with one position.
 struct SurfaceVertex {

@@ -43,7 +43,6 @@ ImageView view_of(std::span<const std::byte> bytes) noexcept {
   view.proximity_grid = grid.empty() ? nullptr : grid.data();
   view.proximity_bricks = records<std::uint32_t>(bytes, Id::proximity_bricks);
   view.proximity_cells = records<std::uint32_t>(bytes, Id::proximity_cells);
-  view.region_runs = records<image::RegionRun>(bytes, Id::region_runs);
   view.surface_vertices = records<image::SurfaceVertex>(bytes, Id::surface_vertices);
   view.vertex_normals = records<image::SurfaceNormal>(bytes, Id::vertex_normals);
   view.surface_edges = records<std::uint32_t>(bytes, Id::surface_edges);

@@ -30,7 +30,6 @@ struct ImageView {
   const image::ProximityGrid* proximity_grid = nullptr;  ///< null: the image holds none
   std::span<const std::uint32_t> proximity_bricks;
   std::span<const std::uint32_t> proximity_cells;
-  std::span<const image::RegionRun> region_runs;
   std::span<const image::Vertex> culling_vertices;
   std::span<const image::SurfaceVertex> surface_vertices;
   std::span<const image::SurfaceNormal> vertex_normals;

@@ -43,7 +43,7 @@ TEST(BakeCommand, Image_and_report_agree) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = nlohmann::json::parse(test::read_file(report));
   EXPECT_EQ(json["bytes"], std::filesystem::file_size(image));
-  EXPECT_EQ(json["format_version"], "2.0");
+  EXPECT_EQ(json["format_version"], "3.0");
   EXPECT_NEAR(json["radius_m"], 0.0145, 0.0005);
   EXPECT_EQ(json["source"]["triangles"], 6);
   EXPECT_EQ(json["source"]["sha256"].get<std::string>().size(), 64u);

@@ -40,7 +40,7 @@ void expect_usage_error(const test::Outcome& outcome, const std::string& what) {
 TEST(Frame, Version_names_formats_and_build) {
   const test::Outcome outcome = palpate({"--version"});
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_EQ(outcome.out.find("palpate " PALPATE_VERSION ", image format 2.0, "), 0u) << outcome.out;
+  EXPECT_EQ(outcome.out.find("palpate " PALPATE_VERSION ", image format 3.0, "), 0u) << outcome.out;
   EXPECT_NE(outcome.out.find(", float32 geometry, double solves\n"), std::string::npos)
       << outcome.out;
 }

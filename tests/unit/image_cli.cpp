@@ -61,7 +61,7 @@ class ImageCommands : public testing::Test {
 TEST_F(ImageCommands, Inspect_prints_header_table_and_levels) {
   const Outcome outcome = inspect({});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  for (const char* words : {"format 2.0", "24 triangles", "radius 2 m", "Orig. Tris", "free"}) {
+  for (const char* words : {"format 3.0", "24 triangles", "radius 2 m", "Orig. Tris", "free"}) {
     EXPECT_NE(outcome.out.find(words), std::string::npos) << words << "\n" << outcome.out;
   }
 }
@@ -70,7 +70,7 @@ TEST_F(ImageCommands, InspectJson_has_the_promised_keys) {
   const Outcome outcome = inspect({"--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
-  EXPECT_EQ(json.at("format_version"), "2.0");
+  EXPECT_EQ(json.at("format_version"), "3.0");
   EXPECT_EQ(json.at("bytes"), bytes_.size());
   EXPECT_EQ(json.at("radius_m"), 2.0);
   EXPECT_EQ(json.at("pieces_total"), 3);

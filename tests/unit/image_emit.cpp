@@ -90,7 +90,7 @@ TEST(IntelHex, KnownRecords_are_written_as_specified) {
 
 TEST(CArray, Text_names_version_and_hash) {
   const std::string text = to_c_array(some_image(), "scan", "");
-  EXPECT_NE(text.find("format 2.0"), std::string::npos);
+  EXPECT_NE(text.find("format 3.0"), std::string::npos);
   EXPECT_NE(text.find("SHA-256"), std::string::npos);
   EXPECT_EQ(text.find("section"), std::string::npos);
   EXPECT_NE(to_c_array(some_image(), "scan", ".flash").find("section(\".flash\")"),

@@ -121,13 +121,13 @@ TEST(FormatPage, Section_and_its_slots_are_those_of_the_header) {
                                        PALPATE_FIELD(S, stride)};
   EXPECT_EQ(fields_of("## 3. Sections"), expected);
   const std::vector<std::size_t> strides = {
-      sizeof(image::Level),          sizeof(image::Piece),           sizeof(image::Vertex),
-      sizeof(std::uint32_t),         sizeof(std::uint32_t),          sizeof(image::Triangle),
-      sizeof(image::VirtualFace),    sizeof(image::Vertex),          sizeof(image::RegionNode),
-      sizeof(image::RegionTriangle), sizeof(image::Region),          sizeof(image::ProximityGrid),
-      sizeof(std::uint32_t),         sizeof(std::uint32_t),          sizeof(image::RegionRun),
-      sizeof(image::SurfaceVertex),  sizeof(image::SurfaceNormal),   sizeof(std::uint32_t),
-      sizeof(image::SurfaceRun),     sizeof(image::TriangleVertices)};
+      sizeof(image::Level),           sizeof(image::Piece),  sizeof(image::Vertex),
+      sizeof(std::uint32_t),          sizeof(std::uint32_t), sizeof(image::Triangle),
+      sizeof(image::VirtualFace),     sizeof(image::Vertex), sizeof(image::RegionNode),
+      sizeof(image::RegionTriangle),  sizeof(image::Region), sizeof(image::ProximityGrid),
+      sizeof(std::uint32_t),          sizeof(std::uint32_t), sizeof(image::SurfaceVertex),
+      sizeof(image::SurfaceNormal),   sizeof(std::uint32_t), sizeof(image::SurfaceRun),
+      sizeof(image::TriangleVertices)};
   std::vector<std::size_t> found;
   for (const auto& row : rows_of("## 3. Sections")) {
     if (row.size() == 4) found.push_back(std::stoul(row[2]));
@@ -150,19 +150,15 @@ TEST(FormatPage, Regions_are_the_structs) {
   EXPECT_EQ(fields_of("### RegionTriangle"), triangle);
   using R = image::Region;
   const std::vector<Field> region = {PALPATE_FIELD(R, parent), PALPATE_FIELD(R, slot),
-                                     PALPATE_FIELD(R, reach),  PALPATE_FIELD(R, radius),
-                                     PALPATE_FIELD(R, rank),   PALPATE_FIELD(R, reserved)};
+                                     PALPATE_FIELD(R, reach), PALPATE_FIELD(R, radius)};
   EXPECT_EQ(fields_of("### Region"), region);
 }
 
-TEST(FormatPage, Proximity_grid_and_runs_are_the_structs) {
+TEST(FormatPage, Proximity_grid_is_the_struct) {
   using G = image::ProximityGrid;
   const std::vector<Field> grid = {PALPATE_FIELD(G, origin), PALPATE_FIELD(G, cell),
                                    PALPATE_FIELD(G, bricks), PALPATE_FIELD(G, reserved)};
   EXPECT_EQ(fields_of("### ProximityGrid"), grid);
-  using R = image::RegionRun;
-  const std::vector<Field> run = {PALPATE_FIELD(R, first), PALPATE_FIELD(R, count)};
-  EXPECT_EQ(fields_of("### RegionRun"), run);
 }
 
 TEST(FormatPage, Surface_is_the_structs) {

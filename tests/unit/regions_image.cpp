@@ -9,7 +9,6 @@
 #include <random>
 
 #include "host_bake/mesh/mesh.hpp"
-#include "host_bake/regions/even_order.hpp"
 #include "host_bake/regions/region_tree.hpp"
 #include "rt_core/image/triangle_normal.hpp"
 #include "tests/support/baked_scene.hpp"
@@ -47,7 +46,6 @@ class Damaged {
   image::ProximityGrid& grid() { return *section<image::ProximityGrid>(SectionId::proximity_grid); }
   std::uint32_t* bricks() { return section<std::uint32_t>(SectionId::proximity_bricks); }
   std::uint32_t* cells() { return section<std::uint32_t>(SectionId::proximity_cells); }
-  image::RegionRun* runs() { return section<image::RegionRun>(SectionId::region_runs); }
   image::Region* regions() { return section<image::Region>(SectionId::regions); }
 
   Status check(ImageView& out) {
@@ -121,11 +119,6 @@ TEST(RegionImage, Damage_of_every_kind_is_refused_by_name) {
       {"brick of no triangle", Status::image_bad_index,
        [](Damaged& d) { d.bricks()[0] = image::kCoarseBrick | d.header().source_triangles; }},
       {"brick of no cells", Status::image_bad_index, [](Damaged& d) { d.bricks()[0] = 77777; }},
-      {"run of another region", Status::image_bad_index, [](Damaged& d) { d.runs()[1].first = 0; }},
-      {"run without an end", Status::image_bad_index, [](Damaged& d) { d.runs()[0].count = ~0u; }},
-      {"empty run", Status::image_bad_index, [](Damaged& d) { d.runs()[0].count = 0; }},
-      {"rank of no region", Status::image_bad_index,
-       [](Damaged& d) { d.regions()[1].rank = 1u << 16; }},
       {"reserved field used", Status::image_bad_section,
        [](Damaged& d) { d.nodes()[3].reserved[2] = 1; }},
   };
@@ -272,64 +265,6 @@ double least_cosine(const bake::RegionTree& tree) {
     }
   }
   return least;
-}
-
-/// Of the first 16, 64 and 256 about each place the same part lies within a distance as of all.
-void expect_even(const std::vector<Vec3d>& ordered, double distance) {
-  for (const std::size_t first : {16u, 64u, 256u}) {
-    double farthest_off = 0;
-    for (const Vec3d& place : ordered) {
-      double of_all = 0;
-      double of_first = 0;
-      for (std::size_t i = 0; i < ordered.size(); ++i) {
-        if (norm(ordered[i] - place) > distance) continue;
-        ++of_all;
-        of_first += i < first ? 1 : 0;
-      }
-      const double off = of_first - double(first) * of_all / double(ordered.size());
-      farthest_off = std::max(farthest_off, std::abs(off));
-    }
-    EXPECT_LE(farthest_off, 0.75 * std::sqrt(double(first))) << first;
-  }
-}
-
-TEST(RegionTree, Every_beginning_of_the_ranks_is_spread_as_all_regions_are) {
-  const bake::RegionTree tree = tree_of(bumpy_ball(80, 100, 1), 0.02);
-  const std::size_t count = tree.regions.size();
-  ASSERT_GT(count, 64u);
-  std::vector<Vec3d> ranked(count);
-  std::vector<int> times(count);
-  for (const image::Region& r : tree.regions) {
-    ASSERT_LT(r.rank, count);
-    ++times[r.rank];
-    const image::RegionNode& node = tree.nodes[r.parent];
-    ranked[r.rank] = {double(node.centre[0][r.slot]), double(node.centre[1][r.slot]),
-                      double(node.centre[2][r.slot])};
-  }
-  for (const int n : times) EXPECT_EQ(n, 1);
-  expect_even(ranked, 0.7);
-}
-
-TEST(EvenOrder, Every_beginning_is_dense_where_all_are) {
-  std::vector<Vec3d> points;
-  for (int i = 0; i < 10; ++i) {
-    for (int k = 0; k < 10; ++k) points.push_back({0.1 * i, 0.1 * k, 0});
-  }
-  for (int i = 0; i < 20; ++i) {
-    for (int k = 0; k < 20; ++k) points.push_back({1 + 0.05 * i, 0.05 * k, 0});
-  }
-  const std::vector<std::uint32_t> places = bake::even_order(points, 0.1);
-  std::vector<Vec3d> ordered(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) ordered[places[i]] = points[i];
-  expect_even(ordered, 0.3);
-}
-
-TEST(EvenOrder, Takes_points_that_coincide_and_none) {
-  EXPECT_TRUE(bake::even_order({}, 1).empty());
-  const std::vector<Vec3d> same(5);
-  std::vector<std::uint32_t> places = bake::even_order(same, 1);
-  std::sort(places.begin(), places.end());
-  EXPECT_EQ(places, (std::vector<std::uint32_t>{0, 1, 2, 3, 4}));
 }
 
 TEST(RegionTree, Opposite_walls_are_in_different_regions) {
