@@ -54,17 +54,13 @@ class FoundContacts {
   std::uint32_t count_ = 0;
 };
 
-/// A way out of the target for a point inside it.
+/// A direction in which a point leaves the target that it is inside of.
 struct WayOut {
   Vec3d normal{};
-  Vec3d foot{};
-  double length = 0;
-  double strength = 0;  ///< its facing, less the longer it is beside the nearest
-  double facing = 0;    ///< how far both surfaces face along it, (0, 1]
-  std::uint32_t triangle = 0;
+  double strength = 0;  ///< how far both surfaces face along it, less the longer it is, (0, 1]
 };
 /// Ways out of one point, at most; the strongest are kept.
-inline constexpr std::uint32_t kMostWays = 64;
+inline constexpr std::uint32_t kMostWays = 256;
 
 /// Triangles near one point that are kept for a second look; where there are more, the tree is
 /// asked twice.
@@ -75,7 +71,6 @@ struct Scratch {
   FoundContacts found;
   Foot feet[kMostFeet];
   WayOut ways[kMostWays];
-  force::PushConstraint constraints[kMostWays];
 };
 
 /// All contacts of a vertex of P, in scratch.found.

@@ -9,11 +9,8 @@ namespace {
 constexpr double kSame = 1e-12;
 /// Closer points than this have no direction between them.
 constexpr double kTouching = 1e-12;
-/// What a way that does not count is short of zero, as a share of one that does: "at least zero" is
-/// a constraint too, of ways between 90 and 180 degrees from others.
-constexpr double kFadedWay = 0.13;
-/// Ways that cancel each other to this share of the strongest do not count.
-constexpr double kCancelling = 4;
+/// Ways that cancel each other to less than one in this of the strongest fade.
+constexpr double kCancelling = 2;
 
 /// Distances to the side of a concave edge, in the larger of delta and the distance from the face,
 /// up to which the face counts wholly, and from which it does not.
@@ -21,6 +18,36 @@ constexpr double kBesideWhole = 0.5;
 constexpr double kBesideNone = 1;
 
 bool same(double a, double b) noexcept { return (a < b ? b - a : a - b) < kSame; }
+
+/// The kinship of a direction with weighted ones, in constant time: the polynomial force::kinship()
+/// of the cosine between two directions is a sum of products of their monomials.
+class KinshipSum {
+ public:
+  void add(Vec3d direction, double weight) noexcept {
+    const Monomials of(direction);
+    for (std::uint32_t i = 0; i < kMonomials; ++i) moments_[i] += weight * of.value[i];
+  }
+  [[nodiscard]] double with(Vec3d direction) const noexcept {
+    const Monomials of(direction);
+    double sum = 0;
+    for (std::uint32_t i = 0; i < kMonomials; ++i) sum += kTimes[i] * moments_[i] * of.value[i];
+    return 0.5 * sum;
+  }
+
+ private:
+  static constexpr std::uint32_t kMonomials = 16;
+  /// How often each occurs in the square and in the cube of the cosine.
+  static constexpr double kTimes[kMonomials] = {1, 1, 1, 2, 2, 2, 1, 1, 1, 3, 3, 3, 3, 3, 3, 6};
+  struct Monomials {
+    explicit Monomials(Vec3d v) noexcept
+        : value{v.x * v.x,       v.y * v.y,       v.z * v.z,       v.x * v.y,
+                v.y * v.z,       v.z * v.x,       v.x * v.x * v.x, v.y * v.y * v.y,
+                v.z * v.z * v.z, v.x * v.x * v.y, v.x * v.x * v.z, v.y * v.y * v.x,
+                v.y * v.y * v.z, v.z * v.z * v.x, v.z * v.z * v.y, v.x * v.y * v.z} {}
+    double value[kMonomials];
+  };
+  double moments_[kMonomials] = {};
+};
 
 class VertexContacts {
  public:
@@ -105,7 +132,7 @@ class VertexContacts {
     if (!behind) {
       if (agrees > 0 && ahead <= reach_) add(nearest.normal, ahead, agrees, foot);
     } else if (inside_ && agrees > 0) {
-      add_way(nearest.normal, ahead < 0 ? -ahead : 0, agrees, foot);
+      add_way(nearest.normal, ahead < 0 ? -ahead : 0, distance, agrees, foot);
     }
     if (inside_ && foot.feature != Feature::face) add_beside(foot, apart, distance);
   }
@@ -122,30 +149,27 @@ class VertexContacts {
     if (w > 0) scratch_.found.add({normal, distance, w, x_, foot.point, foot.triangle});
   }
 
-  void add_way(Vec3d normal, double length, double agrees, const Foot& foot) noexcept {
-    const double direct = directness(depth_, length);
+  void add_way(Vec3d normal, double length, double distance, double agrees,
+               const Foot& foot) noexcept {
+    const double direct = directness(depth_, distance);
     if (direct == 0 && length / agrees >= shortest_) return;
-    const double willing = clamp01(1 + 2 * faces(normal));
-    const WayOut way{normal,           foot.point,   length, direct * agrees * willing,
-                     agrees * willing, foot.triangle};
-    if (!(way.facing > 0)) return;
-    const double weighted = length / way.facing;
-    shortest_ = weighted < shortest_ ? weighted : shortest_;
-    std::uint32_t weakest = 0;
-    for (std::uint32_t i = 0; i < ways_; ++i) {
-      if (same(scratch_.ways[i].length, length) &&
-          dot(scratch_.ways[i].normal, normal) > 1 - kSame) {
-        if (way.strength > scratch_.ways[i].strength) scratch_.ways[i].strength = way.strength;
-        if (way.facing > scratch_.ways[i].facing) scratch_.ways[i].facing = way.facing;
-        return;
-      }
-      if (scratch_.ways[i].strength < scratch_.ways[weakest].strength) weakest = i;
+    const double faced = agrees * clamp01(1 + 2 * faces(normal));
+    if (!(faced > 0)) return;
+    if (length / faced < shortest_) {
+      shortest_ = length / faced;
+      shortest_foot_ = foot;
     }
+    const WayOut way{normal, direct * faced};
+    if (!(way.strength > 0)) return;
     if (ways_ < kMostWays) {
       scratch_.ways[ways_++] = way;
-    } else if (way.strength > scratch_.ways[weakest].strength) {
-      scratch_.ways[weakest] = way;
+      return;
     }
+    std::uint32_t weakest = 0;
+    for (std::uint32_t i = 1; i < ways_; ++i) {
+      if (scratch_.ways[i].strength < scratch_.ways[weakest].strength) weakest = i;
+    }
+    if (way.strength > scratch_.ways[weakest].strength) scratch_.ways[weakest] = way;
   }
 
   /// Beside a concave edge or vertex each face counts.
@@ -174,38 +198,25 @@ class VertexContacts {
     beside(edge.other_normal);
   }
 
-  /// Ways out are alternatives: one contact, along the least push of their directions.
+  /// Ways out are alternatives: one contact, along their mean. Ways that are akin share one say, so
+  /// that it does not matter into how many triangles a surface is cut.
   void leave() noexcept {
-    const WayOut* only = nullptr;
-    std::uint32_t count = 0;
-    const WayOut* shortest = nullptr;
+    KinshipSum kin;
     double strongest = 0;
-    double length = 0;
     for (std::uint32_t i = 0; i < ways_; ++i) {
       const WayOut& way = scratch_.ways[i];
-      const double weighted = way.length / way.facing;
-      if (shortest == nullptr || weighted < length) {
-        shortest = &way;
-        length = weighted;
-      }
-      if (!(way.strength > 0)) continue;
+      kin.add(way.normal, way.strength);
       strongest = way.strength > strongest ? way.strength : strongest;
-      only = &way;
-      scratch_.constraints[count++] = {way.normal, way.strength - (1 - way.strength) * kFadedWay};
     }
-    if (count == 0) return;
-    Foot foot;
-    foot.point = shortest->foot;
-    foot.triangle = shortest->triangle;
-    if (count == 1) {
-      add(only->normal, -length, solidity_ * strongest, foot);
-      return;
+    Vec3d push{};
+    for (std::uint32_t i = 0; i < ways_; ++i) {
+      const WayOut& way = scratch_.ways[i];
+      push += (way.strength * way.strength / kin.with(way.normal)) * way.normal;
     }
-    const Vec3d push = force::least_push({scratch_.constraints, count}).push.vector;
     const double size = norm(push);
     if (!(size > 0)) return;
     const double left = clamp01(kCancelling * size / strongest);
-    add((1 / size) * push, -length, solidity_ * left * strongest, foot);
+    add((1 / size) * push, -shortest_, solidity_ * left * strongest, shortest_foot_);
   }
 
   const Side& side_;
@@ -221,6 +232,7 @@ class VertexContacts {
   std::uint32_t ways_ = 0;
   std::uint32_t feet_ = 0;       // in scratch_.feet
   double shortest_ = kAnywhere;  // of ways out, by how far they are faced
+  Foot shortest_foot_;
 };
 
 }  // namespace

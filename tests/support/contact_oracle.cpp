@@ -447,7 +447,11 @@ std::vector<Found> contacts_of_vertex(const Side& side, const Surface::Vertex& v
     }
     found.push_back({n, d, w, x - 0.5 * d * n});
   };
-  std::vector<Constraint> ways;
+  struct Way {
+    Vec3d normal;
+    double strength;
+  };
+  std::vector<Way> ways;
   double strongest = 0;         // W
   double shortest = kInfinity;  // min t / (b q)
   const double radius = std::max(reach * std::numbers::sqrt2, 3 * h);
@@ -465,10 +469,10 @@ std::vector<Found> contacts_of_vertex(const Side& side, const Surface::Vertex& v
     if (behind && inside && b > 0) {
       const double length = std::max(0.0, -dot(n, a));
       const double willing = clamp01(1 + 2 * nearest(side.turned_to_p(-n), vertex.normals).cosine);
-      const double s = directness(h, length) * b * willing;
+      const double s = directness(h, foot.distance) * b * willing;
       if (b * willing > 0) shortest = std::min(shortest, length / (b * willing));
       if (s > 0) {
-        ways.push_back({n, s - 0.13 * (1 - s)});
+        ways.push_back({n, s});
         strongest = std::max(strongest, s);
       }
     }
@@ -488,17 +492,17 @@ std::vector<Found> contacts_of_vertex(const Side& side, const Surface::Vertex& v
       }
     }
   }
-  if (!ways.empty()) {
-    const auto same = [&](const Constraint& c) {
-      return dot(c.normal, ways[0].normal) > 1 - 1e-12;
-    };
-    const Vec3d v = least_push(ways).vector();
-    const bool one = std::all_of(ways.begin(), ways.end(), same);
-    if (one) {
-      add(ways[0].normal, -shortest, solid * strongest);
-    } else if (norm(v) > 0) {
-      add(unit(v), -shortest, solid * strongest * clamp01(4 * norm(v) / strongest));
+  Vec3d v{};
+  for (const Way& way : ways) {
+    double akin = 0;
+    for (const Way& other : ways) {
+      const double c = dot(way.normal, other.normal);
+      akin += other.strength * c * c * (1 + c) / 2;
     }
+    v += (way.strength * way.strength / akin) * way.normal;
+  }
+  if (norm(v) > 0) {
+    add(unit(v), -shortest, solid * strongest * clamp01(2 * norm(v) / strongest));
   }
   return found;
 }
