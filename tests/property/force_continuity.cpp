@@ -76,12 +76,13 @@ TEST_P(GroundJaws, steadied_force_steps_at_most_half_as_far_again_as_the_exact_o
   }
 }
 
-TEST_P(GroundJaws, force_steps_hardly_farther_without_steadying_where_no_budget_ends_it) {
+TEST_P(GroundJaws, force_steps_less_than_twice_as_far_without_steadying_where_no_budget_ends_it) {
   const Steps exact = largest_steps({.exact = true}, kUnlimited, GetParam(), false);
   for (const double s0 : {0.005, 0.05}) {
     const Steps felt = largest_steps({.s0 = s0}, kUnlimited, GetParam(), false);
-    // Where bodies begin to overlap the surfaces take the place of simplified contacts.
-    EXPECT_LE(felt.force_N, 1.7 * exact.force_N) << "s0 " << s0;
+    // Where bodies begin to overlap the surfaces take the place of simplified contacts; what is
+    // not proved misses vertices that do not face the surface nearest to them.
+    EXPECT_LE(felt.force_N, 2 * exact.force_N) << "s0 " << s0;
   }
 }
 
@@ -90,7 +91,7 @@ TEST_P(GroundJaws, regions_step_so_too_and_without_steadying_where_a_budget_near
   const Steps exact =
       largest_steps({.engine = kRegions, .exact = true}, kUnlimited, GetParam(), false);
   const Steps felt = largest_steps({.engine = kRegions}, 2500, GetParam(), false);
-  EXPECT_LE(felt.force_N, 1.5 * exact.force_N);
+  EXPECT_LE(felt.force_N, 2 * exact.force_N);
   for (const std::uint64_t units : {2500u, 1700u, 1000u, 750u, 500u, 300u, 200u}) {
     const Steps steadied = largest_steps({.engine = kRegions}, units, GetParam(), true);
     EXPECT_LE(steadied.force_N, 1.5 * exact.force_N) << units << " units";
