@@ -61,6 +61,12 @@ constexpr double kSpeeds[] = {0.1, 0.3};  // in m/s
 
 class GroundJaws : public testing::TestWithParam<double> {};
 
+TEST_P(GroundJaws, exact_force_steps_at_most_as_far_as_two_and_a_half_stiffnesses_of_the_motion) {
+  const Settings settings{.exact = true};
+  const Steps exact = largest_steps(settings, kUnlimited, GetParam(), false);
+  EXPECT_LE(exact.force_N, 2.5 * settings.stiffness_N_per_m * GetParam() * kPeriod_s);
+}
+
 TEST_P(GroundJaws, steadied_force_steps_at_most_half_as_far_again_as_the_exact_one) {
   const double speed_m_per_s = GetParam();
   const Steps exact = largest_steps({.exact = true}, kUnlimited, speed_m_per_s, false);
