@@ -36,11 +36,11 @@ inline double facing(double cosine) noexcept {
   return clamp01(1 - arc_cosine(cosine) / kMostTilt_rad);
 }
 
-/// 1 for the nearest way out, 0 for one kMostDetour times as long.
-/// @param depth  of the point, >= 0  @param length  of the way, >= 0
-inline double directness(double depth, double length) noexcept {
-  if (!(length > 0)) return 1;
-  return clamp01((kMostDetour * depth / length - 1) / (kMostDetour - 1));
+/// 1 for the surface nearest to a point inside, 0 for surface kMostDetour times as far away.
+/// @param depth  of the point, >= 0  @param distance  from it, >= 0
+inline double directness(double depth, double distance) noexcept {
+  if (!(distance > 0)) return 1;
+  return clamp01((kMostDetour * depth / distance - 1) / (kMostDetour - 1));
 }
 
 }  // namespace palpate::contact

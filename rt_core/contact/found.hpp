@@ -7,7 +7,6 @@
 
 #include "rt_core/base/pace.hpp"
 #include "rt_core/contact/nearby.hpp"
-#include "rt_core/force/least_push.hpp"
 
 namespace palpate::contact {
 
@@ -57,7 +56,8 @@ class FoundContacts {
 /// A direction in which a point leaves the target that it is inside of.
 struct WayOut {
   Vec3d normal{};
-  double strength = 0;  ///< how far both surfaces face along it, less the longer it is, (0, 1]
+  double strength =
+      0;  ///< how far both surfaces face along it, less the farther away it ends, (0, 1]
 };
 /// Ways out of one point, at most; the strongest are kept.
 inline constexpr std::uint32_t kMostWays = 256;

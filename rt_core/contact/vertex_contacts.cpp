@@ -9,8 +9,8 @@ namespace {
 constexpr double kSame = 1e-12;
 /// Closer points than this have no direction between them.
 constexpr double kTouching = 1e-12;
-/// Ways that cancel each other to less than one in this of the strongest fade.
-constexpr double kCancelling = 2;
+/// Where ways cancel each other, the contact fades below this share of the strongest.
+constexpr double kCancelled = 0.5;
 
 /// Distances to the side of a concave edge, in the larger of delta and the distance from the face,
 /// up to which the face counts wholly, and from which it does not.
@@ -215,7 +215,7 @@ class VertexContacts {
     }
     const double size = norm(push);
     if (!(size > 0)) return;
-    const double left = clamp01(kCancelling * size / strongest);
+    const double left = clamp01(size / (kCancelled * strongest));
     add((1 / size) * push, -shortest_, solidity_ * left * strongest, shortest_foot_);
   }
 
