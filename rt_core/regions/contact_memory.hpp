@@ -28,21 +28,12 @@ struct VertexBound {
   std::uint32_t measured_tick = 0;
 };
 
-/// The plane at the nearest foot that a tick has met: where to look first. Coordinates of Q.
-struct Plane {
-  Vec3d foot{};
-  Vec3d normal{};
-  double distance = kUnknown;  ///< signed, of the point whose foot it is
-  std::uint32_t tick = 0;
-};
-
 /// What is kept of one side of a pair from tick to tick.
 struct SideMemory {
   std::span<RegionBound> regions;
   std::span<VertexBound> vertices;
   std::span<std::uint32_t> edge_ticks;  ///< in which each edge was last measured
   LikelyMemory likely;
-  Plane nearest;
 };
 
 /// A region that may be within reach in this tick.

@@ -286,10 +286,6 @@ std::uint32_t ContactSearch::collect_open() noexcept {
     NearRegion& item = memory_.near[i];
     item.priority = excess_m(item);
     if (!explanation_.is_open(item.priority)) continue;
-    if (measure_.is_stale(item)) {
-      const SideView& view = memory_.views[item.side];
-      item.priority = explanation_.excess_m(view, 0, measure_.likely_distance(item));
-    }
     memory_.queue[open++] = i;
   }
   return open;

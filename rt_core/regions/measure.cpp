@@ -12,10 +12,6 @@ namespace {
 constexpr double kNegligible = 1e-9;
 /// A region's centre is measured where that may raise its bound by so many delta.
 constexpr double kWorthTightening = 0.1;
-/// Bounds that are so many delta below what is likely say nothing of where to look first.
-constexpr double kStale = 1;
-/// The nearest point of a region is likely so many of its radii nearer than its centre.
-constexpr double kLikelyRadius = 0.5;
 /// Vertices and edges that are passed over by their bounds.
 constexpr std::uint32_t kPassedOverPerUnit = 8;
 /// A vertex is proved to be so many delta farther than it need be.
@@ -148,30 +144,9 @@ void Measuring::visit_edge(const NearRegion& item, std::uint32_t index, Visit& v
   }
 }
 
-bool Measuring::is_stale(const NearRegion& item) const noexcept {
-  const SideView& view = memory_.views[item.side];
-  const RegionBound& bound = memory_.sides[item.side].regions[item.region];
-  return bound.upper_since + view.odometer > item.lower + kStale * view.delta;
-}
-
-Plane Measuring::plane_at(const SideView& view, Vec3d point) noexcept {
-  const contact::SignedDistance at = contact::signed_distance(
-      view.side.target, *pace_, view.side.to_target(point), image::kNone, contact::kAnywhere);
-  const Vec3d normal = contact::pseudonormal(view.side.target.surface, at.foot);
-  const double length = norm(normal);
-  return {at.foot.point, length > 0 ? (1 / length) * normal : Vec3d{},
-          contact::lipschitz_bound(view.side.target.surface, at.value), memory_.tick};
-}
-
-double Measuring::likely_distance(const NearRegion& item) noexcept {
-  const SideView& view = memory_.views[item.side];
-  Plane& nearest = memory_.sides[item.side].nearest;
-  if (nearest.tick != memory_.tick) nearest = plane_at(view, {});
-  const Sphere sphere = sphere_of(view, item.region);
-  return dot(nearest.normal, view.side.to_target(sphere.centre) - nearest.foot) -
-         kLikelyRadius * sphere.radius;
-}
-
+/// Bounds a region and its vertices by the distance of its centre: signed distances change no
+/// faster than points move.
+/// @return false where that can tell no more than is known
 bool Measuring::tighten(NearRegion& item) noexcept {
   const SideView& view = memory_.views[item.side];
   SideMemory& side = memory_.sides[item.side];
@@ -179,41 +154,21 @@ bool Measuring::tighten(NearRegion& item) noexcept {
   const double may_prove = bound.upper_since + view.odometer;
   if (may_prove <= item.lower + kWorthTightening * view.delta) return false;
   const Sphere sphere = sphere_of(view, item.region);
-  const Plane plane = plane_at(view, sphere.centre);
-  if (side.nearest.tick != memory_.tick || plane.distance < side.nearest.distance) {
-    side.nearest = plane;
-  }
-  const double lower = plane.distance - sphere.radius;
+  const contact::Target& target = view.side.target;
+  const contact::SignedDistance at = contact::signed_distance(
+      target, *pace_, view.side.to_target(sphere.centre), image::kNone, contact::kAnywhere);
+  const double centre = contact::lipschitz_bound(target.surface, at.value);
+  const double lower = centre - sphere.radius;
   bound.upper_since = lower - view.odometer;
   bound.lower_until = larger(bound.lower_until, lower + view.odometer);
   item.lower = larger(item.lower, lower);
-  const std::uint32_t likely = lower_vertices(item, plane, sphere);
-  if (likely != image::kNone) vertex(item.side, likely);
-  return true;
-}
-
-/// Signed distances change no faster than points move.
-/// @return the vertex that is likely to be nearest, kNone where none is likely within reach
-std::uint32_t Measuring::lower_vertices(const NearRegion& item, const Plane& plane,
-                                        const Sphere& sphere) noexcept {
-  const SideView& view = memory_.views[item.side];
   const image::SurfaceRun run = view.image().surface_runs[item.region];
-  std::uint32_t nearest = image::kNone;
-  double least = contact::kReach * view.delta;
-  for (std::uint32_t i = 0; i < run.vertices; ++i) {
-    const std::uint32_t index = run.first_vertex + i;
-    const Vec3d point = contact::position(view.side.points, index);
-    VertexBound& at = memory_.sides[item.side].vertices[index];
-    const double by_centre =
-        plane.distance - norm(point - sphere.centre) * contact::kRoomForRounding;
-    at.lower_until = larger(at.lower_until, by_centre + view.odometer);
-    const double likely = dot(plane.normal, view.side.to_target(point) - plane.foot);
-    if (likely < least && at.measured_tick != memory_.tick) {
-      least = likely;
-      nearest = index;
-    }
+  for (std::uint32_t i = run.first_vertex; i < run.first_vertex + run.vertices; ++i) {
+    const double away = norm(contact::position(view.side.points, i) - sphere.centre);
+    double& until = side.vertices[i].lower_until;
+    until = larger(until, centre - away * contact::kRoomForRounding + view.odometer);
   }
-  return nearest;
+  return true;
 }
 
 double Measuring::edge_bound(const ContactSource& edge, double region_lower) const noexcept {

@@ -40,15 +40,10 @@ class Measuring {
 
   void source(const ContactSource& source) noexcept;
 
-  /// Measures what is open of a region: its centre and the vertex that is likely nearest, where
-  /// that may tell more than is known; else vertices and edges.
-  /// @param most  so many of these, at most
+  /// Tightens the bounds of a region where that may tell more than is known; else measures what is
+  /// open of it.
+  /// @param most  so many vertices and edges, at most
   void region(NearRegion& item, std::uint32_t most) noexcept;
-
-  /// Whether a region's bound says little of where it is.
-  [[nodiscard]] bool is_stale(const NearRegion& item) const noexcept;
-  /// Its signed distance by the plane at the nearest foot met on its side; no bound.
-  [[nodiscard]] double likely_distance(const NearRegion& item) noexcept;
 
  private:
   /// One pass over a region.
@@ -65,9 +60,6 @@ class Measuring {
   void visit_vertex(const NearRegion& item, std::uint32_t vertex, Visit& visit) noexcept;
   void visit_edge(const NearRegion& item, std::uint32_t index, Visit& visit) noexcept;
   bool tighten(NearRegion& item) noexcept;
-  Plane plane_at(const SideView& view, Vec3d point) noexcept;
-  std::uint32_t lower_vertices(const NearRegion& item, const Plane& plane,
-                               const Sphere& sphere) noexcept;
   double edge_bound(const ContactSource& edge, double region_lower) const noexcept;
   [[nodiscard]] std::uint32_t hint_of(std::uint32_t side, std::uint32_t vertex) const noexcept;
   void vertex(std::uint32_t side, std::uint32_t index) noexcept;
