@@ -65,10 +65,11 @@ void Measuring::region(NearRegion& item, std::uint32_t most) noexcept {
   Visit visit;
   visit.left = most;
   visit.explained_m = explanation_.explained_m(view, item.region);
+  RegionBound& bound = memory_.sides[item.side].regions[item.region];
+  visit.lower = bound.lower_until - view.odometer;
   pace_->charge((run.vertices + run.edges) / kPassedOverPerUnit);
   for (std::uint32_t i = 0; i < run.vertices; ++i) visit_vertex(item, run.first_vertex + i, visit);
   for (std::uint32_t i = 0; i < run.edges; ++i) visit_edge(item, run.first_edge + i, visit);
-  RegionBound& bound = memory_.sides[item.side].regions[item.region];
   if (visit.least < kUnknown) {
     bound.lower_until = larger(bound.lower_until, visit.least + view.odometer);
   }
@@ -90,9 +91,9 @@ bool Measuring::measures(const SideView& view, const contact::NormalCone& cone, 
 void Measuring::visit_vertex(const NearRegion& item, std::uint32_t index, Visit& visit) noexcept {
   const SideView& view = memory_.views[item.side];
   VertexBound& at = memory_.sides[item.side].vertices[index];
-  double lower = larger(at.lower_until - view.odometer, item.lower);
-  if (at.measured_tick != memory_.tick &&
-      explanation_.is_open(explanation_.excess_m(view, visit.explained_m, lower)) &&
+  const bool measured = at.measured_tick == memory_.tick;
+  double lower = larger(at.lower_until - view.odometer, measured ? visit.lower : item.lower);
+  if (!measured && explanation_.is_open(explanation_.excess_m(view, visit.explained_m, lower)) &&
       measures(view, contact::cone_of_vertex(view.side.points, index), lower, visit) &&
       !proves_far(item.side, index, lower)) {
     vertex(item.side, index);
@@ -128,9 +129,10 @@ bool Measuring::proves_far(std::uint32_t side, std::uint32_t index, double lower
 
 void Measuring::visit_edge(const NearRegion& item, std::uint32_t index, Visit& visit) noexcept {
   const SideView& view = memory_.views[item.side];
-  const double lower = edge_bound({item.side, index}, item.lower);
+  const bool measured = memory_.sides[item.side].edge_ticks[index] == memory_.tick;
+  const double lower = edge_bound({item.side, index}, measured ? visit.lower : item.lower);
   visit.least = smaller(visit.least, lower);
-  if (memory_.sides[item.side].edge_ticks[index] == memory_.tick) return;
+  if (measured) return;
   const auto cone = [&] {
     const std::uint32_t name = view.image().surface_edges[index];
     return contact::cone_of_edge(contact::edge_of(view.side.points, name));

@@ -48,6 +48,7 @@ class Measuring {
  private:
   /// One pass over a region.
   struct Visit {
+    double lower = -kUnknown;      ///< of everything, before it; NearRegion::lower is of less
     double unmeasured = kUnknown;  ///< least bound of what has not been measured in this tick
     double least = kUnknown;       ///< of everything
     double explained_m = 0;        ///< by all directions of the region

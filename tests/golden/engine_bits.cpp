@@ -45,7 +45,7 @@ const Case kCases[] = {
     {"regions, exact",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .exact = true},
      kUnlimited,
-     0xc08f47a7dfafc42b},
+     0x3cdbf9cf90b9e818},
     {"regions, 100 units",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      100,
@@ -64,7 +64,7 @@ const Case kCases[] = {
     {"regions, tolerance",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .force_tolerance_N = 3},
      kUnlimited,
-     0x1b71901e32e9c27e},
+     0xed4d2c32e6dc7d7b},
 };
 constexpr int kTicks = 200;
 

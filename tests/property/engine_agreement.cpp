@@ -97,6 +97,25 @@ TEST_P(Overlap, is_felt_alike_by_both_engines) {
   EXPECT_LT(felt.step_N, press.most_step_N);
 }
 
+// What is kept from tick to tick tells where to look first, never what is left out.
+TEST(ExactForce, is_that_of_a_cold_start) {
+  const BakedBody tool(bake::make_model("jaw_upper", 6000), bake::ForEngine::regions);
+  const BakedBody other(bake::make_model("jaw_lower", 6000), bake::ForEngine::regions);
+  Settings settings;
+  settings.exact = true;
+  settings.engine = EngineKind::regions;
+  BakedScene warm({tool.view, other.view}, {{0, 1}}, settings);
+  for (int t = 0; t < 200; ++t) {
+    const Pose poses[2] = {
+        {{2e-3 * std::sin(.021 * t), 2e-3 * std::sin(.034 * t), 6e-4 * std::cos(.1 * t)}, {}}, {}};
+    const Wrench w = tick_or_fail(*warm.engine, poses).wrench;
+    BakedScene cold({tool.view, other.view}, {{0, 1}}, settings);
+    const Wrench c = tick_or_fail(*cold.engine, poses).wrench;
+    EXPECT_LT(norm(w.force_N - c.force_N), 1e-9 + 1e-9 * norm(c.force_N)) << t;
+    EXPECT_LT(norm(w.torque_Nm - c.torque_Nm), 1e-9 + 1e-9 * norm(c.torque_Nm)) << t;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Presses, Overlap, testing::ValuesIn(kPresses, kPresses + effort(3, 1)),
                          [](const auto& tested) { return std::string(tested.param.tool); });
 
