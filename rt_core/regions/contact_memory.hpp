@@ -18,7 +18,7 @@ inline constexpr double kUnknown = 1e300;
 /// far the bodies have moved: a bound less the motion since is still a bound.
 struct RegionBound {
   double lower_until = -kUnknown;  ///< lower bound plus the odometer when it was proved
-  double upper_since = kUnknown;   ///< the most that measuring the centre could prove, less it
+  double upper_since = kUnknown;   ///< what the centre proved last, less the odometer then
 };
 
 /// Of a vertex's signed distance from the other body.
@@ -39,7 +39,7 @@ struct SideMemory {
 /// A region that may be within reach in this tick.
 struct NearRegion {
   double lower = 0;     ///< of what of it has not been measured in this tick
-  double priority = 0;  ///< by how much it may change the push
+  double priority = 0;  ///< LikelyContacts::promise
   std::uint32_t side = 0;
   std::uint32_t region = 0;
   std::uint32_t settled = 0;  ///< nothing of it was open for this version of the explanation

@@ -13,16 +13,8 @@ namespace {
 
 /// Rounds of measuring and solving, at most.
 constexpr std::uint32_t kMostRounds = 64;
-/// Of the regions that are open, one in so many is measured before the push is solved again; at
-/// least kLeastAtOnce.
-constexpr std::uint32_t kPartAtOnce = 4;
-constexpr std::uint32_t kLeastAtOnce = 4;
-/// Of a region so many vertices and edges are measured before others have their turn; twice as many
-/// after each so many rounds.
-constexpr std::uint32_t kFewPerVisit = 4;
-constexpr std::uint32_t kRoundsToDouble = 4;
-/// Work units: regions that are looked through, and contacts that a push is solved for.
-constexpr std::uint32_t kCollectedPerUnit = 4;
+/// Work units: regions that are compared with the push, and contacts that one is solved for.
+constexpr std::uint32_t kComparedPerUnit = 4;
 constexpr std::uint32_t kSolvedPerUnit = 8;
 
 /// Vertices that are measured because they are likely to change the push, at most.
@@ -36,9 +28,6 @@ constexpr double kLikelyExcess = 0.01;
 /// the push.
 constexpr std::uint32_t kLookedPerUnit = 8;
 constexpr std::uint32_t kScannedPerUnit = 64;
-
-/// The budget ended a count.
-constexpr std::uint32_t kUnknownCount = 0xffffffffu;
 
 struct HigherPriority {
   std::span<const NearRegion> near;
@@ -66,8 +55,7 @@ void ContactSearch::guess(Pace& pace) noexcept {
 
 void ContactSearch::prove_push(Pace& pace) noexcept {
   pace_ = &pace;
-  // Vertices tell most for their time.
-  out_.push_proved = explain(1, false) && explain(1, true) && !out_.contacts_full;
+  out_.push_proved = explain(1) && !out_.contacts_full;
 }
 
 void ContactSearch::see_minima(Pace& pace, std::span<const Contact> minima,
@@ -113,7 +101,7 @@ bool ContactSearch::see_components(Pace& pace) noexcept {
 
 void ContactSearch::prove_places(Pace& pace) noexcept {
   pace_ = &pace;
-  out_.places_proved = out_.push_proved && explain(force::kTakesPart, true) && !out_.contacts_full;
+  out_.places_proved = out_.push_proved && explain(force::kTakesPart) && !out_.contacts_full;
 }
 
 /// Regions that may be within reach.
@@ -239,34 +227,26 @@ const LikelyContact* ContactSearch::most_violated() noexcept {
   return out;
 }
 
-/// Measures what a share of the push does not explain, until nothing is left.
+/// Measures all that a share of the push does not explain, solves, and again, until nothing is
+/// left.
 /// @return false where the budget or the rounds have ended it
-bool ContactSearch::explain(double share, bool edges) noexcept {
+bool ContactSearch::explain(double share) noexcept {
   explanation_.share = share;
-  explanation_.edges = edges;
   ++explanation_.version;
-  for (std::uint32_t round = 0; round < kMostRounds; ++round) {
-    if (!pace_->go_on()) return false;
+  bool open = true;
+  for (std::uint32_t round = 0; round < kMostRounds && open && pace_->go_on(); ++round) {
     solve();
-    const std::uint32_t open = collect_open();
-    if (open == kUnknownCount) return false;
-    if (open == 0) return true;
-    MinQueue<std::uint32_t, HigherPriority> queue(memory_.queue.first(open),
-                                                  HigherPriority{memory_.near});
-    queue.fill();
-    const std::uint32_t part = open / kPartAtOnce;
-    const std::uint32_t at_once = part > kLeastAtOnce ? part : kLeastAtOnce;
-    for (std::uint32_t i = 0; i < at_once && !queue.empty(); ++i) {
-      if (!pace_->go_on()) {
-        solve();
-        return false;
-      }
-      measure_.region(memory_.near[queue.top()], kFewPerVisit << (round / kRoundsToDouble));
-      queue.pop();
+    open = false;
+    for (std::uint32_t i = 0; i < near_ && pace_->go_on(); ++i) {
+      if (i % kComparedPerUnit == 0) pace_->charge(1);
+      NearRegion& item = memory_.near[i];
+      if (!explanation_.is_open(excess_m(item))) continue;
+      open = true;
+      measure_.region(item);
     }
   }
   solve();
-  return collect_open() == 0;
+  return !open && pace_->go_on();
 }
 
 /// By how much a region may change the push; what is settled may not.
@@ -274,21 +254,6 @@ double ContactSearch::excess_m(const NearRegion& item) const noexcept {
   if (item.lower >= kUnknown || item.settled == explanation_.version) return -kUnknown;
   const SideView& view = memory_.views[item.side];
   return explanation_.excess_m(view, explanation_.explained_m(view, item.region), item.lower);
-}
-
-/// Regions that are open, in the queue.
-/// @return how many, kUnknownCount where the budget has ended it
-std::uint32_t ContactSearch::collect_open() noexcept {
-  std::uint32_t open = 0;
-  for (std::uint32_t i = 0; i < near_; ++i) {
-    if (i % kCollectedPerUnit == 0) pace_->charge(1);
-    if (i % kCollectedPerUnit == 0 && !pace_->go_on()) return kUnknownCount;
-    NearRegion& item = memory_.near[i];
-    item.priority = excess_m(item);
-    if (!explanation_.is_open(item.priority)) continue;
-    memory_.queue[open++] = i;
-  }
-  return open;
 }
 
 void ContactSearch::solve() noexcept {

@@ -10,7 +10,8 @@ namespace {
 
 /// Strengths within this of what is explained, in delta, change nothing that is felt.
 constexpr double kNegligible = 1e-9;
-/// A region's centre is measured where that may raise its bound by so many delta.
+/// A region's centre is measured where that may raise its bound by so many delta: by more than
+/// rounding, so that it ends.
 constexpr double kWorthTightening = 0.1;
 /// Vertices and edges that are passed over by their bounds.
 constexpr std::uint32_t kPassedOverPerUnit = 8;
@@ -58,12 +59,11 @@ void Measuring::source(const ContactSource& source) noexcept {
   }
 }
 
-void Measuring::region(NearRegion& item, std::uint32_t most) noexcept {
+void Measuring::region(NearRegion& item) noexcept {
   if (tighten(item)) return;
   const SideView& view = memory_.views[item.side];
   const image::SurfaceRun run = view.image().surface_runs[item.region];
   Visit visit;
-  visit.left = most;
   visit.explained_m = explanation_.explained_m(view, item.region);
   RegionBound& bound = memory_.sides[item.side].regions[item.region];
   visit.lower = bound.lower_until - view.odometer;
@@ -83,9 +83,7 @@ bool Measuring::measures(const SideView& view, const contact::NormalCone& cone, 
   const double explained_m = explanation_.explained_m(view, cone.axis, cone.cosine);
   if (!explanation_.is_open(explanation_.excess_m(view, explained_m, lower))) return false;
   visit.open = true;
-  if (visit.left == 0 || !pace_->go_on_for(memory_.measure_ns)) return false;
-  --visit.left;
-  return true;
+  return pace_->go_on_for(memory_.measure_ns);
 }
 
 void Measuring::visit_vertex(const NearRegion& item, std::uint32_t index, Visit& visit) noexcept {
@@ -137,8 +135,7 @@ void Measuring::visit_edge(const NearRegion& item, std::uint32_t index, Visit& v
     const std::uint32_t name = view.image().surface_edges[index];
     return contact::cone_of_edge(contact::edge_of(view.side.points, name));
   };
-  if (explanation_.edges &&
-      explanation_.is_open(explanation_.excess_m(view, visit.explained_m, lower)) &&
+  if (explanation_.is_open(explanation_.excess_m(view, visit.explained_m, lower)) &&
       measures(view, cone(), lower, visit)) {
     edge(item.side, index);
   } else {

@@ -10,9 +10,8 @@ namespace palpate::regions {
 /// By how much a contact may change the push, as far as is known of it.
 class Explanation {
  public:
-  force::Push push;   ///< on the contacts known
-  double share = 1;   ///< of it that explains: 1 for the force, less for the torque
-  bool edges = true;  ///< edges are measured too
+  force::Push push;  ///< on the contacts known
+  double share = 1;  ///< of it that explains: 1 for the force, less for the torque
   double delta_m = 0;
   double strongest_m = 0;   ///< of the contacts known: what fades is weaker the stronger it is
   double negligible_m = 0;  ///< what exceeds the push by no more may stay open
@@ -42,8 +41,7 @@ class Measuring {
 
   /// Tightens the bounds of a region where that may tell more than is known; else measures what is
   /// open of it.
-  /// @param most  so many vertices and edges, at most
-  void region(NearRegion& item, std::uint32_t most) noexcept;
+  void region(NearRegion& item) noexcept;
 
  private:
   /// One pass over a region.
@@ -52,7 +50,6 @@ class Measuring {
     double unmeasured = kUnknown;  ///< least bound of what has not been measured in this tick
     double least = kUnknown;       ///< of everything
     double explained_m = 0;        ///< by all directions of the region
-    std::uint32_t left = 0;        ///< to be measured
     bool open = false;             ///< something that is open was left or measured
   };
   bool measures(const SideView& view, const contact::NormalCone& cone, double lower,
