@@ -55,7 +55,8 @@ void ContactSearch::guess(Pace& pace) noexcept {
 
 void ContactSearch::prove_push(Pace& pace) noexcept {
   pace_ = &pace;
-  out_.push_proved = explain(1) && !out_.contacts_full;
+  // Vertices first: they change the push most for their time, should the budget end the search.
+  out_.push_proved = explain(1, false) && explain(1, true) && !out_.contacts_full;
 }
 
 void ContactSearch::see_minima(Pace& pace, std::span<const Contact> minima,
@@ -101,7 +102,7 @@ bool ContactSearch::see_components(Pace& pace) noexcept {
 
 void ContactSearch::prove_places(Pace& pace) noexcept {
   pace_ = &pace;
-  out_.places_proved = out_.push_proved && explain(force::kTakesPart) && !out_.contacts_full;
+  out_.places_proved = out_.push_proved && explain(force::kTakesPart, true) && !out_.contacts_full;
 }
 
 /// Regions that may be within reach.
@@ -230,8 +231,9 @@ const LikelyContact* ContactSearch::most_violated() noexcept {
 /// Measures all that a share of the push does not explain, solves, and again, until nothing is
 /// left.
 /// @return false where the budget or the rounds have ended it
-bool ContactSearch::explain(double share) noexcept {
+bool ContactSearch::explain(double share, bool edges) noexcept {
   explanation_.share = share;
+  explanation_.edges = edges;
   ++explanation_.version;
   bool open = true;
   for (std::uint32_t round = 0; round < kMostRounds && open && pace_->go_on(); ++round) {

@@ -66,7 +66,7 @@ class ContactSearch {
   const LikelyContact* most_violated() noexcept;
   [[nodiscard]] double least_lower_m() const noexcept;
   double raised_by_grid(const NearRegion& item) noexcept;
-  bool explain(double share) noexcept;
+  bool explain(double share, bool edges) noexcept;
   double excess_m(const NearRegion& item) const noexcept;
   void solve() noexcept;
   void bound_error() noexcept;

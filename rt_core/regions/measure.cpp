@@ -135,7 +135,8 @@ void Measuring::visit_edge(const NearRegion& item, std::uint32_t index, Visit& v
     const std::uint32_t name = view.image().surface_edges[index];
     return contact::cone_of_edge(contact::edge_of(view.side.points, name));
   };
-  if (explanation_.is_open(explanation_.excess_m(view, visit.explained_m, lower)) &&
+  if (explanation_.edges &&
+      explanation_.is_open(explanation_.excess_m(view, visit.explained_m, lower)) &&
       measures(view, cone(), lower, visit)) {
     edge(item.side, index);
   } else {

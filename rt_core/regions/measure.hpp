@@ -10,8 +10,9 @@ namespace palpate::regions {
 /// By how much a contact may change the push, as far as is known of it.
 class Explanation {
  public:
-  force::Push push;  ///< on the contacts known
-  double share = 1;  ///< of it that explains: 1 for the force, less for the torque
+  force::Push push;   ///< on the contacts known
+  double share = 1;   ///< of it that explains: 1 for the force, less for the torque
+  bool edges = true;  ///< edges are measured too
   double delta_m = 0;
   double strongest_m = 0;   ///< of the contacts known: what fades is weaker the stronger it is
   double negligible_m = 0;  ///< what exceeds the push by no more may stay open
