@@ -15,8 +15,6 @@ constexpr double kNegligible = 1e-9;
 constexpr double kWorthTightening = 0.1;
 /// Vertices and edges that are passed over by their bounds.
 constexpr std::uint32_t kPassedOverPerUnit = 8;
-/// A vertex is proved to be so many delta farther than it need be.
-constexpr double kProvedBeyond = 0.1;
 
 double larger(double a, double b) noexcept { return a > b ? a : b; }
 double smaller(double a, double b) noexcept { return a < b ? a : b; }
@@ -92,37 +90,12 @@ void Measuring::visit_vertex(const NearRegion& item, std::uint32_t index, Visit&
   const bool measured = at.measured_tick == memory_.tick;
   double lower = larger(at.lower_until - view.odometer, measured ? visit.lower : item.lower);
   if (!measured && explanation_.is_open(explanation_.excess_m(view, visit.explained_m, lower)) &&
-      measures(view, contact::cone_of_vertex(view.side.points, index), lower, visit) &&
-      !proves_far(item.side, index, lower)) {
+      measures(view, contact::cone_of_vertex(view.side.points, index), lower, visit)) {
     vertex(item.side, index);
   }
   lower = larger(at.lower_until - view.odometer, lower);
   if (at.measured_tick != memory_.tick) visit.unmeasured = smaller(visit.unmeasured, lower);
   visit.least = smaller(visit.least, lower);
-}
-
-/// Whether a vertex is so far that the push explains whatever it touches: cheaper to prove than to
-/// measure. It is proved for a little more, so that it lasts.
-bool Measuring::proves_far(std::uint32_t side, std::uint32_t index, double lower) noexcept {
-  const SideView& view = memory_.views[side];
-  const contact::NormalCone cone = contact::cone_of_vertex(view.side.points, index);
-  const double explained = explanation_.explained_m(view, cone.axis, cone.cosine) / view.unit_m;
-  const double far = smaller(view.delta - explained, contact::kReach * view.delta);
-  // A point that is not within `far` of the surface may be as deep inside.
-  if (!(far > 0) || lower < -far) return false;
-  VertexBound& at = memory_.sides[side].vertices[index];
-  const contact::Surface& target = view.side.target.surface;
-  double proved = far + kProvedBeyond * view.delta;
-  const double limit = proved + (proved - contact::lipschitz_bound(target, proved));
-  const contact::SignedDistance nearest = contact::signed_distance(
-      view.side.target, *pace_, view.side.to_target(contact::position(view.side.points, index)),
-      at.nearest, limit);
-  if (nearest.foot.triangle != image::kNone) {
-    at.nearest = nearest.foot.triangle;
-    proved = contact::lipschitz_bound(target, nearest.value);
-  }
-  at.lower_until = larger(at.lower_until, proved + view.odometer);
-  return proved >= far;
 }
 
 void Measuring::visit_edge(const NearRegion& item, std::uint32_t index, Visit& visit) noexcept {
@@ -144,7 +117,7 @@ void Measuring::visit_edge(const NearRegion& item, std::uint32_t index, Visit& v
   }
 }
 
-/// Bounds a region and its vertices by the distance of its centre: signed distances change no
+/// Bounds a region by the distance of its centre: signed distances change no
 /// faster than points move.
 /// @return false where that can tell no more than is known
 bool Measuring::tighten(NearRegion& item) noexcept {
@@ -162,12 +135,6 @@ bool Measuring::tighten(NearRegion& item) noexcept {
   bound.upper_since = lower - view.odometer;
   bound.lower_until = larger(bound.lower_until, lower + view.odometer);
   item.lower = larger(item.lower, lower);
-  const image::SurfaceRun run = view.image().surface_runs[item.region];
-  for (std::uint32_t i = run.first_vertex; i < run.first_vertex + run.vertices; ++i) {
-    const double away = norm(contact::position(view.side.points, i) - sphere.centre);
-    double& until = side.vertices[i].lower_until;
-    until = larger(until, centre - away * contact::kRoomForRounding + view.odometer);
-  }
   return true;
 }
 

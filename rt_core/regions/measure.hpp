@@ -55,7 +55,6 @@ class Measuring {
   };
   bool measures(const SideView& view, const contact::NormalCone& cone, double lower,
                 Visit& visit) noexcept;
-  bool proves_far(std::uint32_t side, std::uint32_t index, double lower) noexcept;
   void visit_vertex(const NearRegion& item, std::uint32_t vertex, Visit& visit) noexcept;
   void visit_edge(const NearRegion& item, std::uint32_t index, Visit& visit) noexcept;
   bool tighten(NearRegion& item) noexcept;
