@@ -13,10 +13,6 @@ namespace {
 constexpr double kRests = 0.5;
 /// A vertex that does not face the surface rests for so many delta.
 constexpr double kTurnedAway = 0.05;
-/// One that is out of reach may come nearer so many times as fast as in the last tick, and no
-/// slower than this share of the way.
-constexpr double kFaster = 2;
-constexpr double kSlowest = 0.5;
 
 constexpr double kNothing = 1e300;
 
@@ -79,9 +75,8 @@ LikelyContacts::LikelyContacts(const SideView& view, std::uint32_t side, LikelyM
       scale_(static_cast<float>(view.side.points.scale / target_.scale)) {}
 
 void LikelyContacts::begin_tick() noexcept {
-  memory_.before = memory_.now;
   memory_.now = {to_float(view_.side.rotation),
-                 vec_cast<float>((1 / target_.scale) * view_.side.translation), view_.odometer};
+                 vec_cast<float>((1 / target_.scale) * view_.side.translation)};
 }
 
 double LikelyContacts::promise(std::uint32_t region) const noexcept {
@@ -108,9 +103,9 @@ std::uint32_t LikelyContacts::look(std::uint32_t region, std::span<LikelyContact
   for (std::uint32_t i = 0; i < run.vertices && count < out.size(); ++i) {
     double& until = memory_.vertices[run.first_vertex + i];
     if (!(until > odometer_)) {
-      const Found found = look_at(run.first_vertex + i, out[count]);
-      until = rest_of(found, out[count]) + odometer_;
-      nearest = found.distance < nearest ? found.distance : nearest;
+      const double distance = look_at(run.first_vertex + i, out[count]);
+      until = rest_of(distance, out[count]) + odometer_;
+      nearest = distance < nearest ? distance : nearest;
       const double strength = static_cast<double>(out[count].strength_m) / view_.unit_m;
       strongest = strength > strongest ? strength : strongest;
       if (strength > 0) ++count;
@@ -124,31 +119,27 @@ std::uint32_t LikelyContacts::look(std::uint32_t region, std::span<LikelyContact
   return looked;
 }
 
-double LikelyContacts::rest_of(const Found& found, const LikelyContact& contact) const noexcept {
+double LikelyContacts::rest_of(double distance, const LikelyContact& contact) const noexcept {
   if (!(contact.strength_m > 0)) {
-    if (found.distance <= view_.delta) return kTurnedAway * view_.delta;
-    const double faster = kFaster * found.rate;
-    const double rate = faster < kSlowest ? kSlowest : faster < 1 ? faster : 1;
-    return (found.distance - view_.delta) / rate;
+    const double beyond = distance - view_.delta;
+    return beyond > 0 ? beyond : kTurnedAway * view_.delta;
   }
   const double short_of_m = force::kTakesPart * push_.push.along(vec_cast<double>(contact.push)) -
                             static_cast<double>(contact.strength_m);
   return short_of_m > 0 ? kRests * short_of_m / view_.unit_m : 0;
 }
 
-LikelyContacts::Found LikelyContacts::look_at(std::uint32_t vertex,
-                                              LikelyContact& out) const noexcept {
+double LikelyContacts::look_at(std::uint32_t vertex, LikelyContact& out) const noexcept {
   out.strength_m = 0;
   const ImageView& points = view_.image();
   const image::SurfaceVertex& v = points.surface_vertices[vertex];
-  const Vec3f scaled = scale_ * read(v.position);
-  const Vec3f x = memory_.now(scaled);
+  const Vec3f x = memory_.now(scale_ * read(v.position));
   const std::uint32_t triangle = contact::cell_at(*target_.image, x).triangle;
   const image::RegionTriangle& t = target_.image->region_triangles[triangle];
   const Vec3f corner = read(t.corners);
   const Vec3f normal = cross(read(t.corners + 3) - corner, read(t.corners + 6) - corner);
   const float length = norm(normal);
-  if (!(length > 0)) return {};
+  if (!(length > 0)) return 0;
   Place place{dot(normal, x - corner) / length, (1 / length) * normal};
   const auto delta = static_cast<float>(view_.delta / target_.scale);
   const bool behind = place.distance < 0 && contact::is_open(target_);
@@ -161,23 +152,17 @@ LikelyContacts::Found LikelyContacts::look_at(std::uint32_t vertex,
       place.distance = static_cast<float>(distance / target_.scale);
     }
   }
-  Found found{static_cast<double>(place.distance) * target_.scale, 1};
-  if (place.distance >= delta) {
-    const double way = memory_.now.odometer - memory_.before.odometer;
-    const double nearer =
-        static_cast<double>(dot(place.normal, memory_.before(scaled) - x)) * target_.scale;
-    if (way > 0) found.rate = (nearer > 0 ? nearer : -nearer) / way;
-    return found;
-  }
+  const double distance = static_cast<double>(place.distance) * target_.scale;
+  if (place.distance >= delta) return distance;
   const float cosine = facing_cosine(points, v, transpose(memory_.now.turn) * (-place.normal));
   const double weight = contact::facing(static_cast<double>(cosine)) *
-                        contact::solidity(target_, found.distance < 0 ? -found.distance : 0);
-  out.strength_m = static_cast<float>(weight * (view_.delta - found.distance) * view_.unit_m);
+                        contact::solidity(target_, distance < 0 ? -distance : 0);
+  out.strength_m = static_cast<float>(weight * (view_.delta - distance) * view_.unit_m);
   out.weight = static_cast<float>(weight);
   const Vec3d push = view_.to_world * vec_cast<double>(place.normal);
   out.push = vec_cast<float>(view_.points_of_tool ? push : -push);
   out.source = {side_, vertex};
-  return found;
+  return distance;
 }
 
 }  // namespace palpate::regions

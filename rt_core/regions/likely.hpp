@@ -46,20 +46,17 @@ struct LikelyRegion {
 struct Placement {
   Mat3f turn{};
   Vec3f move{};
-  double odometer = 0;  ///< SideView::odometer
 
   [[nodiscard]] Vec3f operator()(Vec3f scaled) const noexcept { return turn * scaled + move; }
 };
 
 /// What is kept of one side from tick to tick. A vertex rests up to an odometer: one that is out of
-/// reach until the bodies have moved by what it is beyond, the slower it comes nearer the longer;
-/// one that is too weak to count, until motion and changes of the push have used up what it is
-/// short of that.
+/// reach until the bodies have moved by what it is beyond; one that is too weak to count, until
+/// motion and changes of the push have used up what it is short of that.
 struct LikelyMemory {
   std::span<LikelyRegion> regions;
   std::span<double> vertices;
   Placement now;
-  Placement before;  ///< of the last tick
 };
 
 /// The push of the tick before, and by how much that in any direction may have changed in all ticks
@@ -94,15 +91,11 @@ class LikelyContacts {
                      std::uint32_t& count) noexcept;
 
  private:
-  /// Where a vertex is likely to be.
-  struct Found {
-    double distance = 0;  ///< signed, in units of the pair
-    double rate = 1;      ///< by how much that has changed in the last tick, of the way
-  };
   /// @param out  strength 0 where it is no contact
-  Found look_at(std::uint32_t vertex, LikelyContact& out) const noexcept;
+  /// @return its likely signed distance, in units of the pair
+  double look_at(std::uint32_t vertex, LikelyContact& out) const noexcept;
   /// How long a vertex rests, in units of the pair.
-  [[nodiscard]] double rest_of(const Found& found, const LikelyContact& contact) const noexcept;
+  [[nodiscard]] double rest_of(double distance, const LikelyContact& contact) const noexcept;
 
   const SideView& view_;
   const contact::Surface& target_;

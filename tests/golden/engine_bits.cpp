@@ -45,15 +45,15 @@ const Case kCases[] = {
     {"regions, exact",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .exact = true},
      kUnlimited,
-     0xe5ae7897e2570a78},
+     0xb2c2e00e60d33559},
     {"regions, 100 units",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      100,
-     0xb5b98c7c137f1b99},
+     0xd9b425bcedc145cf},
     {"regions, 60 units, slowly",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
      60,
-     0x04c96e9d0396a48b,
+     0x75487c59c77fe256,
      0.03},
     {"regions, 5 units and a reserve",
      {.engine = EngineKind::regions, .delta_m = kDelta_m},
@@ -64,7 +64,7 @@ const Case kCases[] = {
     {"regions, tolerance",
      {.engine = EngineKind::regions, .delta_m = kDelta_m, .force_tolerance_N = 3},
      kUnlimited,
-     0x7004c05345b214a0},
+     0x5b167f750bec8e74},
 };
 constexpr int kTicks = 200;
 
