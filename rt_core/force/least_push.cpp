@@ -9,8 +9,6 @@ constexpr double kHeld = 1e-10;
 /// Added to the diagonal of the Gram matrix: coincident normals stay solvable.
 constexpr double kRidge = 1e-11;
 constexpr double kLeastPivot = 1e-14;
-/// One may enter while all others carry.
-constexpr std::uint32_t kRoom = kMostCarrying + 1;
 
 double gram(Vec3d a, Vec3d b) noexcept {
   const double c = dot(a, b);
@@ -22,7 +20,7 @@ class WorkingSet {
  public:
   explicit WorkingSet(std::span<const PushConstraint> all) noexcept : all_(all) {}
 
-  [[nodiscard]] bool full() const noexcept { return count_ == kRoom; }
+  [[nodiscard]] bool full() const noexcept { return count_ == kMostCarrying; }
   [[nodiscard]] bool has(std::uint32_t index) const noexcept {
     for (std::uint32_t i = 0; i < count_; ++i) {
       if (index_[i] == index) return true;
@@ -55,18 +53,16 @@ class WorkingSet {
   }
 
   void write(PushResult& out) const noexcept {
-    out.carrying_count = 0;
-    for (std::uint32_t i = 0; i < count_ && out.carrying_count < kMostCarrying; ++i) {
-      out.carrying[out.carrying_count++] = {index_[i], multiplier_[i]};
-    }
+    out.carrying_count = count_;
+    for (std::uint32_t i = 0; i < count_; ++i) out.carrying[i] = {index_[i], multiplier_[i]};
   }
 
  private:
   /// Moves towards the multipliers that satisfy all with equality; where one would become negative
-  /// on the way, its constraint leaves. Each pass removes one, so there are at most kRoom.
+  /// on the way, its constraint leaves. Each pass removes one, so there are at most kMostCarrying.
   void settle() noexcept {
-    for (std::uint32_t pass = 0; pass < kRoom && count_ > 0; ++pass) {
-      double wanted[kRoom];
+    for (std::uint32_t pass = 0; pass < kMostCarrying && count_ > 0; ++pass) {
+      double wanted[kMostCarrying];
       solve(wanted);
       double part = 1;
       std::uint32_t leaves = count_;
@@ -103,8 +99,8 @@ class WorkingSet {
   }
 
   /// Cholesky.
-  void solve(double (&out)[kRoom]) const noexcept {
-    double factor[kRoom][kRoom];
+  void solve(double (&out)[kMostCarrying]) const noexcept {
+    double factor[kMostCarrying][kMostCarrying];
     for (std::uint32_t i = 0; i < count_; ++i) {
       double y = all_[index_[i]].strength;
       for (std::uint32_t j = 0; j <= i; ++j) {
@@ -127,9 +123,9 @@ class WorkingSet {
   }
 
   std::span<const PushConstraint> all_;
-  std::uint32_t index_[kRoom] = {};
-  double multiplier_[kRoom] = {};
-  double gram_[kRoom][kRoom] = {};
+  std::uint32_t index_[kMostCarrying] = {};
+  double multiplier_[kMostCarrying] = {};
+  double gram_[kMostCarrying][kMostCarrying] = {};
   std::uint32_t count_ = 0;
 };
 

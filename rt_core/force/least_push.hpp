@@ -39,8 +39,9 @@ struct Push {
   }
 };
 
-/// The push has nine components, so no more contacts than that carry it.
-inline constexpr std::uint32_t kMostCarrying = 9;
+/// The push has nine components, so nine contacts are enough to carry it; where more of them hold
+/// with equality, rounding may leave a tenth.
+inline constexpr std::uint32_t kMostCarrying = 10;
 
 /// A contact whose constraint holds with equality.
 struct Carrying {

@@ -53,13 +53,12 @@ Vec3d arm_of(Vec3d n, Vec3d otherwise, std::span<const PushConstraint> constrain
   return all > 0 ? (1 / all) * sum : otherwise;
 }
 
-/// Adds 2 k J^T G^-1 J: rows of J made orthonormal in the metric of G by Cholesky.
-void add_stiffness(const Vec6 (&rows)[kMostCarrying], const Vec3d (&normals)[kMostCarrying],
+/// Adds 2 k J^T G^-1 J.
+/// @param rows  of J; made orthonormal in the metric of G, by Cholesky
+void add_stiffness(Vec6 (&rows)[kMostCarrying], const Vec3d (&normals)[kMostCarrying],
                    std::uint32_t count, double twice_k, Matrix6& out) noexcept {
   double factor[kMostCarrying][kMostCarrying] = {};
-  Vec6 solved[kMostCarrying];
   for (std::uint32_t i = 0; i < count; ++i) {
-    solved[i] = rows[i];
     for (std::uint32_t j = 0; j <= i; ++j) {
       const double c = dot(normals[i], normals[j]);
       double q = c + c * c + (i == j ? kRidge : 0);
@@ -67,11 +66,10 @@ void add_stiffness(const Vec6 (&rows)[kMostCarrying], const Vec3d (&normals)[kMo
       factor[i][j] = i == j ? sqrt_of(q > kRidge ? q : kRidge) : q / factor[j][j];
     }
     for (std::uint32_t k = 0; k < i; ++k) {
-      for (std::size_t e = 0; e < solved[i].size(); ++e)
-        solved[i][e] -= factor[i][k] * solved[k][e];
+      for (std::size_t e = 0; e < rows[i].size(); ++e) rows[i][e] -= factor[i][k] * rows[k][e];
     }
-    for (double& e : solved[i]) e /= factor[i][i];
-    out.add_square(solved[i], twice_k);
+    for (double& e : rows[i]) e /= factor[i][i];
+    out.add_square(rows[i], twice_k);
   }
 }
 

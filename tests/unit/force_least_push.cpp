@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -101,6 +102,32 @@ TEST(LeastPush, random_sets_are_optimal_whatever_they_begin_with) {
     const std::uint32_t start[] = {0, static_cast<std::uint32_t>(all.size() - 1), 0, 1000};
     const PushResult warm = least_push(all, start);
     expect_near(warm.push.vector, cold.push.vector, 1e-7);
+  }
+}
+
+/// A round tool in a round hole: all contacts of each ring carry, any ten of them depend on each
+/// other, and rounding decides which of them stay.
+TEST(LeastPush, rings_of_contacts_are_optimal_as_they_become_more) {
+  constexpr std::size_t kCorners = 24;
+  std::mt19937 rng(3);
+  std::vector<PushConstraint> all;
+  for (const double up : {0.065, 0.195, 0.44, 0.75, 0.998}) {
+    const double out = std::sqrt(1 - up * up);
+    for (std::size_t i = 0; i < kCorners; ++i) {
+      const double a = 2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / kCorners;
+      all.push_back({{out * std::cos(a), out * std::sin(a), up}, 0.42 + 0.54 * up});
+    }
+  }
+  for (int round = 0; round < 300; ++round) {
+    std::shuffle(all.begin(), all.end(), rng);
+    std::vector<std::uint32_t> start;
+    for (std::size_t count = 10; count <= all.size(); count += 10) {
+      const std::vector<PushConstraint> known(all.data(), all.data() + count);
+      const PushResult r = least_push(known, start);
+      expect_optimal(known, r);
+      start.clear();
+      for (const force::Carrying& c : r.carrying_contacts()) start.push_back(c.index);
+    }
   }
 }
 
