@@ -188,7 +188,7 @@ class EdgeContacts {
   /// @param faces  the cosine between a way out and what the point's own edge faces
   template <class Faces>
   double inside(const Target& target, Vec3d x, double depth, Faces faces) noexcept {
-    const double value = signed_distance(target, pace_, x, image::kNone, kAnywhere).value;
+    const double value = signed_distance(target, pace_, x, image::kNone).value;
     if (!(value < 0)) return 0;
     const double weight = clamp01((kMostOverlap + depth / value) / (kMostOverlap - kWholeOverlap));
     if (!(weight > 0)) return 0;

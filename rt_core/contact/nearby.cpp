@@ -64,11 +64,11 @@ double signed_by(const Surface& surface, const Foot& foot, Vec3d x) noexcept {
   return behind && (!is_open(surface) || distance < open_depth(surface)) ? -distance : distance;
 }
 
-SignedDistance signed_distance(const Target& target, Pace& pace, Vec3d x, std::uint32_t hint,
-                               double limit) noexcept {
+SignedDistance signed_distance(const Target& target, Pace& pace, Vec3d x,
+                               std::uint32_t hint) noexcept {
   const Surface& surface = target.surface;
   SignedDistance out;
-  double radius = limit;
+  double radius = kAnywhere;
   const auto see = [&](std::uint32_t triangle) {
     const Foot foot = closest_point(surface, triangle, x);
     if (foot.squared > radius * radius || !out.is_nearer(foot) ||

@@ -149,10 +149,9 @@ inline double lipschitz_bound(const Surface& surface, double signed_distance) no
   return (signed_distance < 0 ? -signed_distance : signed_distance) - 2 * open_depth(surface);
 }
 
-/// @param hint   a triangle that may be near, or kNone
-/// @param limit  farther surfaces are of no interest
-SignedDistance signed_distance(const Target& target, Pace& pace, Vec3d x, std::uint32_t hint,
-                               double limit) noexcept;
+/// @param hint  a triangle that may be near, or kNone
+SignedDistance signed_distance(const Target& target, Pace& pace, Vec3d x,
+                               std::uint32_t hint) noexcept;
 
 /// A cell of an image's proximity grid, or a brick of cells that are not told apart.
 struct ProximityCell {

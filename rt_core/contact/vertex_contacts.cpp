@@ -64,7 +64,7 @@ class VertexContacts {
   SignedDistance run(std::uint32_t hint) noexcept {
     SignedDistance at;
     if (!collect(hint, at)) {
-      at = signed_distance(side_.target, pace_, x_, hint, kAnywhere);
+      at = signed_distance(side_.target, pace_, x_, hint);
       feet_ = 0;
     }
     if (at.foot.triangle == image::kNone || at.value > reach_) return at;

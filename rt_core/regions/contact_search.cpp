@@ -118,7 +118,6 @@ void ContactSearch::gather() noexcept {
     const double reach =
         contact::kReach * view.delta > with_detail ? contact::kReach * view.delta : with_detail;
     const double deepest = -view.side.target.surface.scale;  // nothing is deeper than the radius
-    likely_contacts(side).begin_tick();
     const std::span<const RegionBound> bounds = memory_.sides[side].regions;
     for (std::uint32_t region = 0; region < bounds.size(); ++region) {
       const double lower = bounds[region].lower_until - view.odometer;
@@ -230,6 +229,7 @@ const LikelyContact* ContactSearch::most_violated() noexcept {
 
 /// Measures all that a share of the push does not explain, solves, and again, until nothing is
 /// left.
+/// @param edges  or vertices alone
 /// @return false where the budget or the rounds have ended it
 bool ContactSearch::explain(double share, bool edges) noexcept {
   explanation_.share = share;

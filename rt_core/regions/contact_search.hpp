@@ -5,7 +5,7 @@
 // With the cone of its normals it bounds the strength of every contact that the region can have.
 // A region is explained where the least push on the contacts known so far already pushes at least
 // as far in all these directions: then nothing in it can change the force. The others are measured,
-// those first that can change it most, until none is left or the budget ends.
+// vertices first, until none is left or the budget ends.
 #pragma once
 
 #include <cstdint>

@@ -71,12 +71,12 @@ LikelyContacts::LikelyContacts(const SideView& view, std::uint32_t side, LikelyM
       memory_(memory),
       push_(push),
       side_(side),
-      odometer_(view.odometer + push.changed_m / view.unit_m),
-      scale_(static_cast<float>(view.side.points.scale / target_.scale)) {}
+      odometer_(view.odometer + push.changed_m / view.unit_m) {}
 
-void LikelyContacts::begin_tick() noexcept {
-  memory_.now = {to_float(view_.side.rotation),
-                 vec_cast<float>((1 / target_.scale) * view_.side.translation)};
+LikelyContacts::Placement LikelyContacts::placement() const noexcept {
+  return {to_float(view_.side.rotation),
+          vec_cast<float>((1 / target_.scale) * view_.side.translation),
+          static_cast<float>(view_.side.points.scale / target_.scale)};
 }
 
 double LikelyContacts::promise(std::uint32_t region) const noexcept {
@@ -96,6 +96,7 @@ std::uint32_t LikelyContacts::look(std::uint32_t region, std::span<LikelyContact
                                    std::uint32_t& count) noexcept {
   LikelyRegion& r = memory_.regions[region];
   const image::SurfaceRun run = view_.image().surface_runs[region];
+  const Placement placed = placement();
   double least = kNothing;
   double nearest = kNothing;
   double strongest = 0;
@@ -103,7 +104,7 @@ std::uint32_t LikelyContacts::look(std::uint32_t region, std::span<LikelyContact
   for (std::uint32_t i = 0; i < run.vertices && count < out.size(); ++i) {
     double& until = memory_.vertices[run.first_vertex + i];
     if (!(until > odometer_)) {
-      const double distance = look_at(run.first_vertex + i, out[count]);
+      const double distance = look_at(placed, run.first_vertex + i, out[count]);
       until = rest_of(distance, out[count]) + odometer_;
       nearest = distance < nearest ? distance : nearest;
       const double strength = static_cast<double>(out[count].strength_m) / view_.unit_m;
@@ -129,11 +130,12 @@ double LikelyContacts::rest_of(double distance, const LikelyContact& contact) co
   return short_of_m > 0 ? kRests * short_of_m / view_.unit_m : 0;
 }
 
-double LikelyContacts::look_at(std::uint32_t vertex, LikelyContact& out) const noexcept {
+double LikelyContacts::look_at(const Placement& placed, std::uint32_t vertex,
+                               LikelyContact& out) const noexcept {
   out.strength_m = 0;
   const ImageView& points = view_.image();
   const image::SurfaceVertex& v = points.surface_vertices[vertex];
-  const Vec3f x = memory_.now(scale_ * read(v.position));
+  const Vec3f x = placed(read(v.position));
   const std::uint32_t triangle = contact::cell_at(*target_.image, x).triangle;
   const image::RegionTriangle& t = target_.image->region_triangles[triangle];
   const Vec3f corner = read(t.corners);
@@ -154,7 +156,7 @@ double LikelyContacts::look_at(std::uint32_t vertex, LikelyContact& out) const n
   }
   const double distance = static_cast<double>(place.distance) * target_.scale;
   if (place.distance >= delta) return distance;
-  const float cosine = facing_cosine(points, v, transpose(memory_.now.turn) * (-place.normal));
+  const float cosine = facing_cosine(points, v, transpose(placed.turn) * (-place.normal));
   const double weight = contact::facing(static_cast<double>(cosine)) *
                         contact::solidity(target_, distance < 0 ? -distance : 0);
   out.strength_m = static_cast<float>(weight * (view_.delta - distance) * view_.unit_m);

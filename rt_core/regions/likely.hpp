@@ -42,21 +42,12 @@ struct LikelyRegion {
   [[nodiscard]] bool never_looked() const noexcept { return promised_at < 0; }
 };
 
-/// Where a body's image is in the coordinates of another's.
-struct Placement {
-  Mat3f turn{};
-  Vec3f move{};
-
-  [[nodiscard]] Vec3f operator()(Vec3f scaled) const noexcept { return turn * scaled + move; }
-};
-
 /// What is kept of one side from tick to tick. A vertex rests up to an odometer: one that is out of
 /// reach until the bodies have moved by what it is beyond; one that is too weak to count, until
 /// motion and changes of the push have used up what it is short of that.
 struct LikelyMemory {
   std::span<LikelyRegion> regions;
   std::span<double> vertices;
-  Placement now;
 };
 
 /// The push of the tick before, and by how much that in any direction may have changed in all ticks
@@ -71,9 +62,6 @@ class LikelyContacts {
  public:
   LikelyContacts(const SideView& view, std::uint32_t side, LikelyMemory& memory,
                  const PushSoFar& push) noexcept;
-
-  /// Takes note of this tick's poses: once a tick, before all else.
-  void begin_tick() noexcept;
 
   [[nodiscard]] bool is_due(std::uint32_t region) const noexcept {
     return !(memory_.regions[region].until > odometer_);
@@ -91,9 +79,18 @@ class LikelyContacts {
                      std::uint32_t& count) noexcept;
 
  private:
+  /// Where the image of P is in the coordinates of Q's.
+  struct Placement {
+    Mat3f turn{};
+    Vec3f move{};
+    float scale = 1;
+
+    [[nodiscard]] Vec3f operator()(Vec3f x) const noexcept { return turn * (scale * x) + move; }
+  };
+  [[nodiscard]] Placement placement() const noexcept;
   /// @param out  strength 0 where it is no contact
   /// @return its likely signed distance, in units of the pair
-  double look_at(std::uint32_t vertex, LikelyContact& out) const noexcept;
+  double look_at(const Placement& placed, std::uint32_t vertex, LikelyContact& out) const noexcept;
   /// How long a vertex rests, in units of the pair.
   [[nodiscard]] double rest_of(double distance, const LikelyContact& contact) const noexcept;
 
@@ -103,7 +100,6 @@ class LikelyContacts {
   const PushSoFar& push_;
   std::uint32_t side_;
   double odometer_;
-  float scale_;  ///< of P's image coordinates in those of Q's
 };
 
 }  // namespace palpate::regions

@@ -117,21 +117,19 @@ void Measuring::visit_edge(const NearRegion& item, std::uint32_t index, Visit& v
   }
 }
 
-/// Bounds a region by the distance of its centre: signed distances change no
-/// faster than points move.
+/// Bounds a region by the distance of its centre: signed distances change no faster than points
+/// move.
 /// @return false where that can tell no more than is known
 bool Measuring::tighten(NearRegion& item) noexcept {
   const SideView& view = memory_.views[item.side];
-  SideMemory& side = memory_.sides[item.side];
-  RegionBound& bound = side.regions[item.region];
+  RegionBound& bound = memory_.sides[item.side].regions[item.region];
   const double may_prove = bound.upper_since + view.odometer;
   if (may_prove <= item.lower + kWorthTightening * view.delta) return false;
   const Sphere sphere = sphere_of(view, item.region);
   const contact::Target& target = view.side.target;
-  const contact::SignedDistance at = contact::signed_distance(
-      target, *pace_, view.side.to_target(sphere.centre), image::kNone, contact::kAnywhere);
-  const double centre = contact::lipschitz_bound(target.surface, at.value);
-  const double lower = centre - sphere.radius;
+  const contact::SignedDistance at =
+      contact::signed_distance(target, *pace_, view.side.to_target(sphere.centre), image::kNone);
+  const double lower = contact::lipschitz_bound(target.surface, at.value) - sphere.radius;
   bound.upper_since = lower - view.odometer;
   bound.lower_until = larger(bound.lower_until, lower + view.odometer);
   item.lower = larger(item.lower, lower);
